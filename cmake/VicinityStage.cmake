@@ -1,0 +1,35 @@
+# SPDX-FileCopyrightText: The Vicinity authors
+# SPDX-License-Identifier: Apache-2.0
+
+# vicinity_stage(NAME [SEES stage...] [PUBLIC library...] [PRIVATE library...])
+#
+# One stage is one library: include/vicinity/NAME and src/NAME. SEES names the stages above it.
+function(vicinity_stage NAME)
+  cmake_parse_arguments(STAGE "" "" "SEES;PUBLIC;PRIVATE" ${ARGN})
+  list(TRANSFORM STAGE_SEES PREPEND vicinity_)
+  set(target vicinity_${NAME})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${NAME}/*.cpp)
+  add_library(${target} STATIC ${sources})
+  add_library(vicinity::${NAME} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${NAME} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+  target_link_libraries(${target} PUBLIC ${STAGE_SEES} ${STAGE_PUBLIC} PRIVATE ${STAGE_PRIVATE})
+  vicinity_compile_rules(${target})
+endfunction()
+
+# The rules every target of ours is compiled by.
+function(vicinity_compile_rules TARGET)
+  target_compile_features(${TARGET} PUBLIC cxx_std_20)
+  # No fused multiply-add: the same scene gives the same bytes on every machine.
+  target_compile_options(${TARGET} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
+                                           -ffp-contract=off)
+  if(VICINITY_WERROR)
+    target_compile_options(${TARGET} PRIVATE -Werror)
+  endif()
+  if(VICINITY_SANITIZE)
+    target_compile_options(${TARGET} PUBLIC $<BUILD_INTERFACE:-fsanitize=${VICINITY_SANITIZE}>
+                                            $<BUILD_INTERFACE:-fno-omit-frame-pointer>)
+    target_link_options(${TARGET} PUBLIC $<BUILD_INTERFACE:-fsanitize=${VICINITY_SANITIZE}>)
+  endif()
+endfunction()

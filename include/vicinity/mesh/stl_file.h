@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+/// STL files, binary and ASCII.
+#pragma once
+
+#include <filesystem>
+
+#include "vicinity/mesh/triangle_mesh.h"
+
+namespace vicinity {
+
+/// Reads an STL file; binary or ASCII is told from the content, not from the word "solid".
+/// Errors: as read_mesh().
+TriangleMesh read_stl(const std::filesystem::path& path);
+
+/// Writes a binary STL file, beside and renamed into place. Coordinates are rounded to float.
+/// Errors: throws Error where the file cannot be written.
+void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path);
+
+}  // namespace vicinity

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+/// From a scene to its field: the whole build half in one call.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vicinity/viscosity/field.h"
+#include "vicinity/viscosity/scene.h"
+
+namespace vicinity {
+
+struct BuildOptions {
+  int threads = 0;  ///< 0: as many as the machine has
+  /// Called from the calling thread's side of the build with the stage ("read", "voxelise", "fill",
+  /// "rank", "merge"), and how much of the whole build is done, 0..1.
+  std::function<void(std::string_view stage, double done)> progress;
+};
+
+/// What a build did, beside the field.
+struct BuildReport {
+  struct Seconds {
+    double read = 0, voxelise = 0, fill = 0, rank = 0, merge = 0, total = 0;
+  } seconds;
+  std::uint64_t boundary = 0, inner = 0, neighbour = 0;  ///< voxels of the finished field
+  int threads = 0;
+  std::vector<std::string>
+      remarks;  ///< sentences for the user: an open mesh, ignored coding values, ...
+};
+
+struct BuildResult {
+  ViscosityField field;
+  BuildReport report;
+};
+
+/// Builds the field of a scene: triangles -> boundary -> inner -> ranks -> one sparse field.
+/// The result does not depend on the order of objects or triangles, nor on the number of threads.
+/// Errors: throws Error for a scene that cannot be built (the sentence names the object).
+BuildResult build_field(const Scene& scene, const BuildOptions& options = {});
+
+}  // namespace vicinity

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+/// The viscosity field: what the build half leaves behind and the tick reads.
+///
+///   root      one entry per region of 64 x 64 x 64 voxels
+///     |       uniform: the code itself                          load 1
+///   region    one entry per brick of 8 x 8 x 8 voxels
+///     |       uniform: the code itself                          load 2
+///   brick     512 short codes of 1, 2, 4, 8 or 16 bits          load 3
+///     |       and the brick's own table of codes                load 4
+///   code      kind, object, rank, viscosity                     load 5
+///
+/// Equal bricks and equal regions are stored once. A lookup is five loads at most, wherever it
+/// lands.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vicinity/geometry/vec3.h"
+#include "vicinity/layers/shaping_element.h"
+#include "vicinity/viscosity/coding.h"
+#include "vicinity/voxel/voxel.h"
+#include "vicinity/voxel/workspace.h"
+
+namespace vicinity {
+
+/// Index into the table of voxel records; 0 is empty space.
+using VoxelCode = std::uint16_t;
+
+/// What one code stands for.
+struct VoxelRecord {
+  VoxelKind kind = VoxelKind::empty;
+  std::uint8_t rank = 0;     ///< 1..q for a neighbour, else 0
+  std::uint16_t object = 0;  ///< index into objects(); no meaning where empty
+};
+
+/// One object as the field knows it.
+struct FieldObject {
+  std::string name;
+  LayerShape layers = LayerShape::sphere;
+  int m = 4, q = 6;
+  Coding coding;
+  double bound_mm = 0;  ///< how much nearer than its rank says a point of a voxel can be [mm]
+  bool closed = true;   ///< whether its mesh was closed
+  std::uint64_t triangles = 0;
+  std::uint64_t boundary = 0, inner = 0;  ///< voxels in its own array, other objects absent
+  std::vector<std::uint64_t> ranks;       ///< voxels of rank 1..q in its own array
+};
+
+/// What a point of space holds.
+struct FieldSample {
+  VoxelRecord record;
+  double viscosity = 0;    ///< mu [N·s/m³]; interpolated between voxels where distance is kept
+  double distance_m = -1;  ///< at least this far from the nearest surface [m]; below zero: not kept
+};
+
+/// Sparse, read-only and shared: copies are cheap and refer to the same memory, which is a file's
+/// mapping or the build's own. All lookups are noexcept, allocate nothing, and may be made from
+/// many threads at once.
+class ViscosityField {
+ public:
+  const Workspace& workspace() const noexcept;
+  const std::vector<FieldObject>& objects() const noexcept;
+  /// Records by code; records()[0] is empty space.
+  std::span<const VoxelRecord> records() const noexcept;
+  /// Viscosity by code [N·s/m³].
+  std::span<const double> viscosities() const noexcept;
+  /// Whether any object keeps distances.
+  bool keeps_distance() const noexcept;
+
+  /// Code of a voxel; 0 outside the workspace.
+  VoxelCode code_at(const VoxelIndex& v) const noexcept;
+  /// Stored distance of a voxel's centre from the nearest surface of the object that the voxel
+  /// belongs to, in voxels, rounded down; below zero where none is kept.
+  double distance_vox_at(const VoxelIndex& v) const noexcept;
+  /// What is at p_W [m]. Outside the workspace and for a position that is not finite: empty.
+  FieldSample at(const Vec3& p_W) const noexcept;
+
+  /// The same voxels with other codings, one per object, in the order of objects().
+  /// Errors: throws Error where a coding has fewer than q values.
+  ViscosityField with_codings(const std::vector<Coding>& codings) const;
+
+  /// The bytes of the field, exactly as they stand in its file.
+  std::span<const std::byte> image() const noexcept;
+  /// A field over bytes that were read or built. Verifies checksums and that no reference leaves
+  /// its section, so that no lookup can leave the image. `where` names the source in errors.
+  /// Errors: throws Error for anything but a whole, undamaged field of this version.
+  static ViscosityField from_image(std::shared_ptr<const std::byte[]> bytes, std::size_t size,
+                                   const std::string& where);
+
+ private:
+  struct Index;  // where the sections start; see field.cpp
+  std::shared_ptr<const Index> index_;
+};
+
+}  // namespace vicinity

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+/// The workplace: which objects stand where, and how thick their layers are.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "vicinity/geometry/vec3.h"
+#include "vicinity/layers/shaping_element.h"
+#include "vicinity/mesh/placement.h"
+#include "vicinity/mesh/triangle_mesh.h"
+#include "vicinity/viscosity/coding.h"
+#include "vicinity/voxel/boundary.h"
+#include "vicinity/voxel/inner.h"
+
+namespace vicinity {
+
+/// A mesh on disk. Mesh files carry no unit, so that one must be stated.
+struct MeshFile {
+  std::filesystem::path path;
+  std::optional<LengthUnit> units;
+};
+
+/// One object. A mesh given in memory is in metres.
+struct SceneObject {
+  std::string name;
+  std::variant<MeshFile, TriangleMesh> shape;
+  Pose X_WO = Pose::Identity();
+  double scale = 1;
+  int m = 4;  ///< radius of the floating analyser zone, in voxels, 1..8
+  int q = 6;  ///< number of ranks, 0..32
+  LayerShape layers = LayerShape::sphere;
+  BoundaryMethod boundary = BoundaryMethod::exact;
+  InnerMethod inner = InnerMethod::winding;
+  Coding coding{{32, 25, 20, 17, 15, 13}, 100};
+};
+
+/// The slave arm, for the run-time half.
+struct SceneRobot {
+  std::filesystem::path urdf;
+  Pose X_WB = Pose::Identity();  ///< its base
+  double points_per_m2 = 2000;
+  std::vector<std::string> exclude;  ///< links that feel nothing
+  std::string tool;                  ///< frame of the tool
+};
+
+struct Scene {
+  double voxel_size = 0.005;  ///< h [m]
+  std::optional<Box> bounds;  ///< in W [m]; where absent, all objects with all their layers
+  std::vector<SceneObject> objects;
+  std::optional<SceneRobot> robot;
+};
+
+}  // namespace vicinity
