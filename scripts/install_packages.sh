@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Vicinity authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# The one place that says what Vicinity needs from Debian 12, and installs what is missing.
+set -euo pipefail
+
+packages=(
+  g++ cmake ninja-build pkg-config   # build
+  libeigen3-dev                      # vectors and poses
+  libtbb-dev                         # parallel stages
+  libfmt-dev                         # text
+  libassimp-dev                      # OBJ, PLY, glTF, DAE, 3MF, FBX
+  libyaml-cpp-dev                    # scene files
+  nlohmann-json3-dev libxxhash-dev   # what a field file says of itself, and its checksums
+  libcli11-dev                       # command line
+  libcairo2-dev fonts-dejavu-core    # pictures
+  libopenvdb-dev                     # export to .vdb
+  libgtest-dev libgmock-dev          # tests
+)
+if [[ ${1:-} == --benchmarks ]]; then
+  packages+=(libbenchmark-dev)
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query --show --showformat='${Status}' "$package" 2>/dev/null || true)
+  [[ $status == 'install ok installed' ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -gt 0 ]] || exit 0
+
+as_root=()
+if [[ $(id -u) -ne 0 ]]; then
+  if ! command -v sudo >/dev/null; then
+    echo "install_packages.sh: these Debian packages are missing and there is no sudo to install them with;" \
+         "as root, run: apt-get install ${missing[*]}" >&2
+    exit 2
+  fi
+  as_root=(sudo)
+fi
+echo "Installing ${missing[*]}" >&2
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
