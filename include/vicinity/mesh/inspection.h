@@ -19,25 +19,33 @@ struct MeshProblem {
   std::string means;  ///< what it does to the build, as a sentence
 };
 
-/// Findings about one mesh. Edges are compared by welded vertices (equal to the last bit).
+/// Findings about one mesh. Edges are compared by welded vertices (equal to the last bit), and
+/// without the triangles that name a vertex twice, which close nothing.
 struct MeshInspection {
   enum class Verdict {
     ok,        ///< nothing to say
     usable,    ///< builds, but read the problems
-    unusable,  ///< no triangle with any extent
+    unusable,  ///< no triangle with any area
   };
   Verdict verdict = Verdict::ok;
   std::size_t triangles = 0;
-  bool closed =
-      true;  ///< every edge is shared by two triangles (or an even number, wound in pairs)
-  std::size_t shells = 0;                 ///< pieces connected through shared vertices
-  std::size_t open_edges = 0, holes = 0;  ///< edges of one triangle; loops they form
-  std::size_t non_manifold_edges = 0, inconsistent_edges = 0;
-  std::size_t duplicate_triangles = 0, degenerate_triangles = 0;
-  Box bounds;  ///< in the file's unit
+  /// Every edge is shared by two triangles (or an even number, wound in pairs).
+  bool closed = true;
+  std::size_t shells = 0;                ///< pieces connected through shared vertices
+  std::size_t open_edges = 0;            ///< edges of one triangle only, cracks included
+  std::size_t holes = 0;                 ///< rims that the open edges form
+  std::size_t crack_edges = 0;           ///< open edges that would close if vertices nearer than
+                                         ///< 1e-5 of the bounding box diagonal were one
+  std::size_t non_manifold_edges = 0;    ///< edges of more than two triangles
+  std::size_t inconsistent_edges = 0;    ///< edges of two triangles that disagree on the outside
+  std::size_t duplicate_triangles = 0;   ///< copies, either way round, beyond the first
+  std::size_t degenerate_triangles = 0;  ///< without area, to the last bit
+  Box bounds;                            ///< in the file's unit
   std::vector<MeshProblem> problems;
 };
 
+/// Inspects a mesh in linear time and memory: a second or so for a million triangles.
+/// Errors: none; every index must name a vertex.
 MeshInspection inspect(const TriangleMesh& mesh);
 
 /// "ok", "usable" or "unusable".

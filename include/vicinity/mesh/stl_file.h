@@ -10,8 +10,11 @@
 
 namespace vicinity {
 
-/// Reads an STL file; binary or ASCII is told from the content, not from the word "solid".
-/// Errors: as read_mesh().
+/// Reads an STL file; binary or ASCII is told from the content, not from the word "solid". Several
+/// solids in an ASCII file become one mesh. Stored normals are ignored: the winding says the same,
+/// and real files hold zeros or nonsense there.
+/// Errors: as read_mesh(); also for a binary file whose size is not what its triangle count says,
+/// and for an ASCII file that does not end with "endsolid".
 TriangleMesh read_stl(const std::filesystem::path& path);
 
 /// Writes a binary STL file, beside and renamed into place. Coordinates are rounded to float.
