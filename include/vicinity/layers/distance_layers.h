@@ -40,6 +40,10 @@ struct DistanceLayers {
 /// least s = max(0, D - half_diagonal_vox) away, and its rank is floor(s / m) + 1: rank n says "at
 /// least (n-1)*m voxels away" and is never optimistic. Voxels with s >= q*m take no rank.
 ///
+/// Distances are right to 1e-6 voxels before they are rounded; triangles lower than 2e-6 voxels
+/// count as their edges. Neither the order of triangles nor the number of threads changes the
+/// result. The boxes reach one voxel beyond q*m: D is measured from the centre.
+///
 /// @param mesh  the object, placed in W [m]
 /// @param m     voxels per rank, 1..8
 /// @param q     number of ranks, 0..32

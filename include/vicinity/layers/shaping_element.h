@@ -48,6 +48,12 @@ class ShapingElement {
 /// How much nearer to the surface than its rank says a point of a ranked voxel can be, in voxels:
 /// the largest over ranks n <= q of (n-1)*m minus the smallest gap between a voxel of rank n and a
 /// boundary voxel. Rank n says "at least (n-1)*m voxels away". Zero for `cube` and `distance`.
+///
+/// A lone boundary voxel attains it. It holds where no inner voxel has a face in common with an
+/// empty one, as around every closed mesh with InnerMethod::winding. Where some do (`raster`, open
+/// meshes), ranks behind them can be formed late and say more than is true.
+///
+/// Errors: throws Error for q outside 0..32 and, but for `distance`, for m outside 1..8.
 double rank_bound_vox(LayerShape shape, int m, int q);
 
 }  // namespace vicinity
