@@ -17,8 +17,14 @@ enum class InnerMethod {
 
 /// Inner voxels of a mesh: none of them is in `boundary`.
 ///
+/// `winding` first turns round triangles that are wound against most of their neighbours. A closed
+/// mesh is then decided exactly, region by region. Cracks narrower than a thousandth of a voxel
+/// count as closed. Where a mesh stays open, each voxel is decided by its winding number, up to the
+/// accuracy of sums over far triangles, about 0.002. Neither method depends on the order of
+/// triangles or the number of threads.
+///
 /// @param mesh       placed in W [m]
-/// @param boundary   its boundary voxels
+/// @param boundary   its `exact` boundary voxels: through a skin with gaps, regions would leak
 /// @param workspace  the grid; only origin and voxel size matter
 /// @return           voxels in the box of `boundary`
 VoxelSet inner_voxels(const TriangleMesh& mesh, const VoxelSet& boundary,

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vicinity/voxel/inner.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "consistent_winding.h"
+#include "free_regions.h"
+#include "mesh_slice.h"
+#include "open_edges.h"
+#include "open_inner.h"
+#include "slabbed_mesh.h"
+#include "solid_angle.h"
+
+namespace vicinity {
+namespace {
+
+// Winding number of a closed mesh about the centre of a voxel that is not boundary: outward less
+// inward crossings of the line from there to x = infinity. No surface is within half a voxel of the
+// centre, so that rounding cannot move a crossing to its other side.
+int closed_winding_number(const SlabbedMesh& mesh, const VoxelIndex& v) {
+  int crossings = 0;
+  for (const std::uint32_t t : mesh.triangles_in(v.k >> 3)) {
+    const std::optional<SliceSegment> segment = slice(mesh.corners(t), v.k + 0.5);
+    if (!segment) continue;
+    const std::optional<Crossing> crossing = cross(*segment, v.j + 0.5);
+    if (crossing && crossing->x > v.i + 0.5) crossings += crossing->sign;
+  }
+  return crossings;
+}
+
+// The same from the solid angles of all triangles: slower, but nothing slips through a crack.
+int cracked_winding_number(const SlabbedMesh& mesh, const VoxelIndex& v) {
+  const Vec3 centre(v.i + 0.5, v.j + 0.5, v.k + 0.5);
+  SolidAngleSum sum;
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    const std::array<Vec3, 3> corners = mesh.corners(t);
+    sum.add(corners[0] - centre, corners[1] - centre, corners[2] - centre);
+  }
+  return static_cast<int>(std::lround(sum.value() / (4 * std::numbers::pi)));
+}
+
+// Inner voxels where the winding number of a voxel is that of its whole region.
+VoxelSet closed_inner(const SlabbedMesh& mesh, const VoxelSet& boundary,
+                      int (*winding_number_at)(const SlabbedMesh&, const VoxelIndex&)) {
+  VoxelSet inner(boundary.box());
+  const FreeRegions regions(boundary);
+  std::vector<char> is_inner(regions.voxels().size());
+  tbb::parallel_for(std::size_t{1}, is_inner.size(), [&](std::size_t region) {
+    is_inner[region] = winding_number_at(mesh, regions.voxels()[region]) != 0;
+  });
+  tbb::parallel_for(regions.slab_begin(), regions.slab_end(), [&](std::int32_t slab) {
+    regions.visit_slab(
+        slab, is_inner,
+        [&](std::int32_t i_begin, std::int32_t i_end, std::int32_t j) {
+          BitBlock full;
+          full.words.fill(~std::uint64_t{0});
+          for (std::int32_t i = i_begin; i < i_end; ++i) inner.blocks().make({i, j, slab}) = full;
+        },
+        [&](const BlockIndex& b, const BitBlock& part) {
+          BitBlock& block = inner.blocks().make(b);
+          for (std::size_t row = 0; row < 64; ++row) block.words[row] |= part.words[row];
+        });
+  });
+  return inner;
+}
+
+VoxelSet winding_inner(const TriangleMesh& mesh, const VoxelSet& boundary,
+                       const Workspace& workspace) {
+  const SlabbedMesh as_given(mesh, workspace);
+  if (open_edges(as_given, 0).empty()) {
+    return closed_inner(as_given, boundary, closed_winding_number);
+  }
+  // Often a mesh is not open at all, but some of its triangles are wound the wrong way.
+  const TriangleMesh turned = consistently_wound(mesh);
+  const SlabbedMesh slabbed(turned, workspace);
+  if (open_edges(slabbed, 0).empty()) {
+    return closed_inner(slabbed, boundary, closed_winding_number);
+  }
+  const std::vector<OpenEdge> edges = open_edges(slabbed, crack_vox);
+  return edges.empty() ? closed_inner(slabbed, boundary, cracked_winding_number)
+                       : open_inner(slabbed, edges, boundary);
+}
+
+// Even-odd in each row: voxels whose centre is past an odd number of crossings (§4.1.3).
+VoxelSet raster_inner(const SlabbedMesh& mesh, const VoxelSet& boundary) {
+  VoxelSet inner(boundary.box());
+  const VoxelBox& box = boundary.box();
+  tbb::parallel_for(mesh.slab_begin(), mesh.slab_end(), [&](std::int32_t slab) {
+    std::vector<std::vector<double>> rows(static_cast<std::size_t>(box.hi.j - box.lo.j));
+    for (std::int32_t k = slab * 8; k < slab * 8 + 8; ++k) {
+      for (const std::uint32_t t : mesh.triangles_in(slab)) {
+        const std::optional<SliceSegment> segment = slice(mesh.corners(t), k + 0.5);
+        if (!segment) continue;
+        const auto [low, high] = std::minmax(segment->from[1], segment->to[1]);
+        for (std::int32_t j = floor_index(low); j <= floor_index(high); ++j) {
+          const std::optional<Crossing> crossing = cross(*segment, j + 0.5);
+          if (crossing) rows[static_cast<std::size_t>(j - box.lo.j)].push_back(crossing->x);
+        }
+      }
+      for (std::int32_t j = box.lo.j; j < box.hi.j; ++j) {
+        std::vector<double>& crossings = rows[static_cast<std::size_t>(j - box.lo.j)];
+        std::sort(crossings.begin(), crossings.end());
+        // An open mesh may leave a last crossing without partner: nothing is filled beyond it.
+        for (std::size_t c = 0; c + 1 < crossings.size(); c += 2) {
+          const auto centre_past = [](double x) { return -floor_index(-(x - 0.5)); };
+          inner.insert_run(centre_past(crossings[c]), centre_past(crossings[c + 1]), j, k);
+        }
+        crossings.clear();
+      }
+    }
+    boundary.blocks().for_each_in_slab(slab, [&](const BlockIndex& b, const BitBlock& taken) {
+      BitBlock* block = inner.blocks().find(b);
+      if (block == nullptr) return;
+      for (std::size_t row = 0; row < 64; ++row) block->words[row] &= ~taken.words[row];
+    });
+  });
+  return inner;
+}
+
+}  // namespace
+
+VoxelSet inner_voxels(const TriangleMesh& mesh, const VoxelSet& boundary,
+                      const Workspace& workspace, InnerMethod method) {
+  if (mesh.triangles.empty()) return VoxelSet(boundary.box());
+  switch (method) {
+    case InnerMethod::winding:
+      return winding_inner(mesh, boundary, workspace);
+    case InnerMethod::raster:
+      return raster_inner(SlabbedMesh(mesh, workspace), boundary);
+    case InnerMethod::none:
+      break;
+  }
+  return VoxelSet(boundary.box());
+}
+
+double winding_number(const TriangleMesh& mesh, const Vec3& p_W) {
+  SolidAngleSum sum;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    sum.add(mesh.vertices[a] - p_W, mesh.vertices[b] - p_W, mesh.vertices[c] - p_W);
+  }
+  return sum.value() / (4 * std::numbers::pi);
+}
+
+}  // namespace vicinity
