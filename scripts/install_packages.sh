@@ -17,6 +17,7 @@ packages=(
   libcairo2-dev fonts-dejavu-core    # pictures
   libopenvdb-dev                     # export to .vdb
   libgtest-dev libgmock-dev          # tests
+  liburdfdom-dev liborocos-kdl-dev   # tests: robots and kinematics by another route
 )
 if [[ ${1:-} == --benchmarks ]]; then
   packages+=(libbenchmark-dev)

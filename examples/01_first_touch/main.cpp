@@ -1,7 +1,8 @@
+#include <cstdio>
+
 #include <vicinity/drag/drag.h>
 #include <vicinity/mesh/primitive.h>
 #include <vicinity/viscosity/build_field.h>
-#include <cstdio>
 
 int main() {
   vicinity::Scene scene;  // 5 mm voxels; an upright vessel, 0.4 m wide and 1.2 m tall

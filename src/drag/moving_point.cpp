@@ -64,12 +64,13 @@ struct Reach {
 }  // namespace
 
 double MovingPoint::advance(const ViscosityField& field, const MemoryWeights& weights,
-                            Traversal traversal, const Vec3& p_W) noexcept {
-  if (!p_W.allFinite()) return started_ ? memory_.effective(weights) : 0;
+                            Traversal traversal, const Vec3& from_W,
+                            const Vec3& to_W) noexcept {
+  if (!to_W.allFinite()) return started_ ? memory_.effective(weights) : 0;
   const Workspace& workspace = field.workspace();
-  Vec3 from = to_reachable_grid(workspace, p_W_), to = to_reachable_grid(workspace, p_W);
-  const double mu = field.at(p_W).viscosity;
-  p_W_ = p_W;
+  Vec3 from = to_reachable_grid(workspace, from_W), to = to_reachable_grid(workspace, to_W);
+  const double mu = field.at(to_W).viscosity;
+  p_W_ = to_W;
   if (!started_) {
     started_ = true;
     memory_.start(mu);

@@ -50,4 +50,12 @@ double ViscosityMemory::effective(const MemoryWeights& weights) const noexcept {
   return weights.rise_at_once ? std::max(current, mean) : mean;
 }
 
+double ViscosityMemory::highest(int k) const noexcept {
+  double highest = 0;
+  for (int i = 0; i < k; ++i) {
+    highest = std::max(highest, remembered_[(newest_ - static_cast<std::size_t>(i)) & mask]);
+  }
+  return highest;
+}
+
 }  // namespace vicinity

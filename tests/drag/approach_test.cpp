@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "drag/fields.h"
-#include "drag/no_allocation.h"
+#include "no_allocation.h"
 #include "vicinity/mesh/primitive.h"
 
 namespace vicinity {

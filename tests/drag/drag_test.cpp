@@ -7,7 +7,7 @@
 
 #include <random>
 
-#include "drag/no_allocation.h"
+#include "no_allocation.h"
 #include "vicinity/viscosity/coding.h"
 
 namespace vicinity {

@@ -11,7 +11,7 @@
 #include <random>
 
 #include "drag/fields.h"
-#include "drag/no_allocation.h"
+#include "no_allocation.h"
 #include "vicinity/mesh/primitive.h"
 
 namespace vicinity {

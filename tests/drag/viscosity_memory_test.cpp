@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "drag/no_allocation.h"
+#include "no_allocation.h"
 #include "vicinity/geometry/error.h"
 
 namespace vicinity {

@@ -13,7 +13,7 @@
 #include <random>
 #include <vector>
 
-#include "drag/no_allocation.h"
+#include "no_allocation.h"
 
 namespace vicinity {
 namespace {

@@ -32,7 +32,25 @@ class MovingPoint {
   /// Real-time: no allocation; time grows with the voxels on the path within the workspace, so that
   /// the caller decides which jump is too long to be a motion.
   double advance(const ViscosityField& field, const MemoryWeights& weights, Traversal traversal,
-                 const Vec3& p_W) noexcept;
+                 const Vec3& p_W) noexcept {
+    return advance(field, weights, traversal, p_W_, p_W);
+  }
+
+  /// As above, for whoever knows better where the point was last: not every step of a point that
+  /// stays in its voxel, or far from everything, need be told to it.
+  double advance(const ViscosityField& field, const MemoryWeights& weights, Traversal traversal,
+                 const Vec3& from_W, const Vec3& to_W) noexcept;
+
+  /// mu_e where the point is now: advance() without what it crossed on the way there [N·s/m³].
+  double effective(const MemoryWeights& weights) const noexcept {
+    return started_ ? memory_.effective(weights) : 0;
+  }
+
+  /// Whether any viscosity that still counts is above zero. A point that remembers nothing need not
+  /// be moved through empty space.
+  bool remembers(const MemoryWeights& weights) const noexcept {
+    return started_ && memory_.highest(weights.k) > 0;
+  }
 
   /// Unit vector towards the surface that the point feels (approach.h). In empty space, where it
   /// only remembers its viscosity, it remembers the direction too, so that a retreat stays free to

@@ -60,6 +60,9 @@ class ViscosityMemory {
   /// are read as k terms, i = 0..k-1) [N·s/m³].
   double effective(const MemoryWeights& weights) const noexcept;
 
+  /// The highest of the k latest values.
+  double highest(int k) const noexcept;
+
  private:
   static constexpr std::size_t mask = memory_capacity - 1;
   static_assert((memory_capacity & (memory_capacity - 1)) == 0);

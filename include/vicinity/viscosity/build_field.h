@@ -17,8 +17,8 @@ namespace vicinity {
 
 struct BuildOptions {
   int threads = 0;  ///< 0: as many as the machine has
-  /// Called from the calling thread's side of the build with the stage ("read", "voxelise", "fill",
-  /// "rank", "merge"), and how much of the whole build is done, 0..1.
+  /// Called now and then, from any thread but never from two at once, with the stage ("read",
+  /// "voxelise", "fill", "rank", "merge"), and how much of the whole build is done, 0..1.
   std::function<void(std::string_view stage, double done)> progress;
 };
 

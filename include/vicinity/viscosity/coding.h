@@ -4,6 +4,7 @@
 /// Viscosity of each rank: mu(n) (§5.2, §5.4).
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -23,10 +24,15 @@ struct Coding {
   double at_distance(double distance_vox, int m, int q) const noexcept;
 };
 
-/// A named coding: "linear" (32, 29, ... 5) and "nonlinear" (32, 20, 13, 11, 10, 9, 8, 0, 0, 0, 0)
-/// of the paper's table 2, "jnd" (from 32 down by the just noticeable ratio 1.34, any q) or "paper"
-/// (32, 25, 20, 17, 15, 13 of §5.2, the default).
-/// Errors: throws Error for another name.
+/// Errors: throws Error, naming `where`, for fewer values than q, and for a value or a skin that is
+/// not finite or below zero.
+void check_coding(const Coding& coding, int q, const std::string& where);
+
+/// q values of a named coding: "linear" (32, 29, ... 5) and "nonlinear" (32, 20, 13, 11, 10, 9, 8,
+/// 0, 0, 0, 0) of the paper's table 2, "jnd" (from 32 down by the just noticeable ratio 1.34) or
+/// "paper" (32, 25, 20, 17, 15, 13 of §5.2, the default). The first two go on below their last
+/// value as they end: in steps of 3 down to zero, and in zeros. Errors: throws Error for another
+/// name, and for "paper" with q above 6.
 Coding named_coding(std::string_view name, int q);
 
 }  // namespace vicinity

@@ -52,20 +52,26 @@ struct FieldObject {
   std::vector<std::uint64_t> ranks;       ///< voxels of rank 1..q in its own array
 };
 
+/// Voxels of a finished field by kind; overlaps count once, for the object that won.
+struct VoxelCounts {
+  std::uint64_t boundary = 0, inner = 0, neighbour = 0;
+};
+
 /// What a point of space holds.
 struct FieldSample {
-  VoxelRecord record;
+  VoxelRecord record;      ///< of the voxel that holds the point
   double viscosity = 0;    ///< mu [N·s/m³]; interpolated between voxels where distance is kept
-  double distance_m = -1;  ///< at least this far from the nearest surface [m]; below zero: not kept
+  double distance_m = -1;  ///< at least this far from the surface [m]; below zero: not kept
 };
 
 /// Sparse, read-only and shared: copies are cheap and refer to the same memory, which is a file's
 /// mapping or the build's own. All lookups are noexcept, allocate nothing, and may be made from
-/// many threads at once.
+/// many threads at once. A default-constructed field holds nothing: assign one before asking it.
 class ViscosityField {
  public:
   const Workspace& workspace() const noexcept;
   const std::vector<FieldObject>& objects() const noexcept;
+  const VoxelCounts& voxel_counts() const noexcept;
   /// Records by code; records()[0] is empty space.
   std::span<const VoxelRecord> records() const noexcept;
   /// Viscosity by code [N·s/m³].
@@ -75,20 +81,32 @@ class ViscosityField {
 
   /// Code of a voxel; 0 outside the workspace.
   VoxelCode code_at(const VoxelIndex& v) const noexcept;
+  /// Whether the 8 x 8 x 8 voxels around v that are stored as one brick are all empty; true outside
+  /// the workspace. Two loads; a mixed brick counts as not empty.
+  bool brick_is_empty(const VoxelIndex& v) const noexcept;
   /// Stored distance of a voxel's centre from the nearest surface of the object that the voxel
   /// belongs to, in voxels, rounded down; below zero where none is kept.
   double distance_vox_at(const VoxelIndex& v) const noexcept;
   /// What is at p_W [m]. Outside the workspace and for a position that is not finite: empty.
+  ///
+  /// Objects with ranks are looked up as they are, stepped, and keep no distance. Around objects
+  /// in `distance` mode viscosity and distance are interpolated between the eight nearest voxel
+  /// centres, so that viscosity has no step outside the skin and fades to zero beyond the last
+  /// rank; distance_m is then never more than the true distance to the object felt there, and zero
+  /// in its boundary and inner voxels.
   FieldSample at(const Vec3& p_W) const noexcept;
 
-  /// The same voxels with other codings, one per object, in the order of objects().
-  /// Errors: throws Error where a coding has fewer than q values.
+  /// The same voxels with other codings, one per object, in the order of objects(). Shares the
+  /// image, which goes on to hold the codings of the build; so does a file saved from it. Where
+  /// objects overlap, each voxel stays with the object that won in the build.
+  /// Errors: throws Error where a coding has fewer than q values or one that is not a viscosity.
   ViscosityField with_codings(const std::vector<Coding>& codings) const;
 
   /// The bytes of the field, exactly as they stand in its file.
   std::span<const std::byte> image() const noexcept;
   /// A field over bytes that were read or built. Verifies checksums and that no reference leaves
-  /// its section, so that no lookup can leave the image. `where` names the source in errors.
+  /// its section, so that no lookup can leave the image. `where` names the source in errors;
+  /// `bytes` is aligned as memory from new or mmap is.
   /// Errors: throws Error for anything but a whole, undamaged field of this version.
   static ViscosityField from_image(std::shared_ptr<const std::byte[]> bytes, std::size_t size,
                                    const std::string& where);

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "vicinity/geometry/error.h"
 #include "vicinity/geometry/vec3.h"
 #include "vicinity/layers/shaping_element.h"
 #include "vicinity/mesh/placement.h"
@@ -39,6 +40,14 @@ struct SceneObject {
   InnerMethod inner = InnerMethod::winding;
   Coding coding{{32, 25, 20, 17, 15, 13}, 100};
 };
+
+/// Errors: throws Error, naming `where`, for an empty name, m, q, scale or pose out of range, and
+/// as check_coding().
+void check_object(const SceneObject& object, const std::string& where);
+
+/// The error for a mesh file without a unit: says how large the object is read as mm, m and inches.
+/// @param mesh  as it stands in its file
+Error missing_unit(const TriangleMesh& mesh, const std::string& where);
 
 /// The slave arm, for the run-time half.
 struct SceneRobot {

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "commands/export.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <vector>
+
+#include "arguments.h"
+#include "progress_bar.h"
+#include "readable.h"
+#include "vicinity/viscosity/field_file.h"
+#include "volume/npy_file.h"
+#include "volume/vdb_file.h"
+#include "volume/vti_file.h"
+
+namespace vicinity::cli {
+namespace {
+
+// More than this is a plant room by mistake: no viewer opens it.
+constexpr std::uint64_t most_bytes = 16'000'000'000;
+
+VoxelBox voxels_within(const Workspace& grid, const Box& box) {
+  const Vec3 lo = grid.to_grid(box.min()), hi = grid.to_grid(box.max());
+  // A corner on a voxel's face does not ask for the voxel behind it.
+  const auto first = [](double g, std::int32_t n) {
+    return static_cast<std::int32_t>(std::clamp(std::floor(g + 1e-6), 0.0, static_cast<double>(n)));
+  };
+  const auto last = [](double g, std::int32_t n) {
+    return static_cast<std::int32_t>(std::clamp(std::ceil(g - 1e-6), 0.0, static_cast<double>(n)));
+  };
+  const VoxelIndex& dims = grid.dims;
+  return {{first(lo.x(), dims.i), first(lo.y(), dims.j), first(lo.z(), dims.k)},
+          {last(hi.x(), dims.i), last(hi.y(), dims.j), last(hi.z(), dims.k)}};
+}
+
+void refuse_absurd_size(const ExportOptions& options, const VoxelBox& box, std::uint64_t size) {
+  std::error_code no_matter;
+  const auto folder = std::filesystem::absolute(options.output).parent_path();
+  const auto space = std::filesystem::space(folder, no_matter);
+  const bool too_much = size > most_bytes;
+  if (!too_much && (no_matter || size < space.available)) return;
+  throw Error({.where = options.output.string(),
+               .what = too_much ? "would be absurdly large" : "would not fit on its disk",
+               .found = fmt::format("{} for {} x {} x {} voxels", bytes(size), box.hi.i - box.lo.i,
+                                    box.hi.j - box.lo.j, box.hi.k - box.lo.k),
+               .expected = "at most " + bytes(too_much ? most_bytes : space.available),
+               .hint = "--box x,y,z,x,y,z to cut out a part, or .vdb, which is sparse"});
+}
+
+}  // namespace
+
+int export_field(const ExportOptions& options, std::ostream& out, std::ostream& err) {
+  constexpr std::array choices = {
+      std::pair{"rank", VoxelQuantity::rank}, std::pair{"viscosity", VoxelQuantity::viscosity},
+      std::pair{"object", VoxelQuantity::object}, std::pair{"distance", VoxelQuantity::distance}};
+  enum class Format { npy, vdb, vti };
+  constexpr std::array formats = {std::pair{".npy", Format::npy}, std::pair{".vdb", Format::vdb},
+                                  std::pair{".vti", Format::vti}};
+  const Format format = one_of("-o", options.output.extension().string(), formats);
+  std::vector<VoxelQuantity> quantities = {VoxelQuantity::rank};
+  if (!options.what.empty()) {
+    quantities = {one_of("--what", options.what, choices)};
+  } else if (format == Format::vdb) {
+    quantities.push_back(VoxelQuantity::viscosity);
+  }
+
+  const ViscosityField field = open_field(options.field);
+  const Workspace& grid = field.workspace();
+  const VoxelBox box =
+      options.box.empty() ? grid.box() : voxels_within(grid, box_from("--box", options.box));
+  if (box.empty()) {
+    throw Error({.where = "--box",
+                 .what = "lies outside the workspace",
+                 .found = options.box,
+                 .hint = "vicinity info " + options.field.string() + " to see its corners"});
+  }
+  if (quantities.front() == VoxelQuantity::distance && !field.keeps_distance()) {
+    throw Error({.where = options.field.string(),
+                 .what = "keeps no distances",
+                 .hint = "building it with --shape distance"});
+  }
+  const std::uint64_t voxels = static_cast<std::uint64_t>(box.hi.i - box.lo.i) *
+                               static_cast<std::uint64_t>(box.hi.j - box.lo.j) *
+                               static_cast<std::uint64_t>(box.hi.k - box.lo.k);
+  if (format != Format::vdb) {
+    refuse_absurd_size(options, box, voxels * size_of(quantities.front()));
+  }
+  {
+    ProgressBar bar(err);
+    const auto progress = [&](double done) { bar.show("export", done); };
+    switch (format) {
+      case Format::npy:
+        write_npy(field, box, quantities.front(), options.output, progress);
+        break;
+      case Format::vti:
+        write_vti(field, box, quantities.front(), options.output, progress);
+        break;
+      case Format::vdb:
+#ifdef VICINITY_OPENVDB
+        write_vdb(field, box, quantities, options.output, progress);
+        break;
+#else
+        throw Error({.where = options.output.string(),
+                     .what = "this program was built without OpenVDB",
+                     .hint = "-o with .npy or .vti"});
+#endif
+    }
+  }
+  std::string exported;
+  for (const VoxelQuantity quantity : quantities) {
+    exported += (exported.empty() ? "" : " and ") + std::string(to_string(quantity));
+  }
+  out << fmt::format("{}: {} of {} x {} x {} voxels, {}\n", options.output.string(), exported,
+                     box.hi.i - box.lo.i, box.hi.j - box.lo.j, box.hi.k - box.lo.k,
+                     bytes(std::filesystem::file_size(options.output)));
+  return 0;
+}
+
+}  // namespace vicinity::cli

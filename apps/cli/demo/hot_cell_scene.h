@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+/// The demo's scene file, carried inside the program.
+#pragma once
+
+#include <string_view>
+
+namespace vicinity::cli {
+
+/// The text of scenes/hot_cell.yaml.
+extern const std::string_view hot_cell_scene;
+
+}  // namespace vicinity::cli

@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The command line: words in, one command called, an exit code out. The only unit that knows CLI11,
+// which takes long to compile.
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "commands/build.h"
+#include "commands/check.h"
+#include "commands/demo.h"
+#include "commands/export.h"
+#include "commands/info.h"
+#include "commands/query.h"
+#include "commands/slice.h"
+#include "commands/trace.h"
+#include "interruption.h"
+#include "vicinity/geometry/error.h"
+#include "vicinity/geometry/nearest_word.h"
+
+namespace vicinity::cli {
+namespace {
+
+// Exit codes that scripts may rely on.
+constexpr int our_failure = 1;
+constexpr int unusable = 2;
+constexpr int interrupted = 130;
+
+constexpr const char* welcome =
+    R"(Vicinity lets the operator of a remote arm feel how close the arm is to things.
+
+  vicinity demo                 see all of it at once, on a small hot cell; takes seconds
+  vicinity check MESH           what is wrong with a mesh
+  vicinity build SCENE -o F     meshes into a viscosity field
+  vicinity info F               what is in a field
+  vicinity query F X Y Z        what is at a point
+  vicinity trace F ...          the drag on a point along a straight track
+  vicinity slice F ...          a picture of the layers
+  vicinity export F -o ...      for numpy, ParaView, Blender
+
+Each of them explains itself with --help, and shows an example.
+)";
+
+using Run = std::function<int()>;
+
+// A subcommand whose options live as long as it may run.
+template <class Options>
+struct Command {
+  CLI::App& app;
+  std::shared_ptr<Options> options = std::make_shared<Options>();
+
+  Command(CLI::App& parent, const char* name, const char* does, const char* example)
+      : app(*parent.add_subcommand(name, does)) {
+    app.footer(std::string("Example:\n  ") + example);
+  }
+
+  void runs(int (*function)(const Options&, std::ostream&, std::ostream&), Run& run) {
+    app.callback([function, &run, held = options] {
+      run = [function, held] { return function(*held, std::cout, std::cerr); };
+    });
+  }
+};
+
+void add_check(CLI::App& parent, Run& run) {
+  Command<CheckOptions> command(parent, "check", "Say what is wrong with a mesh, in words",
+                                "vicinity check vessel.stl --units mm");
+  auto& [app, options] = command;
+  app.add_option("MESH", options->mesh, "STL, OBJ, PLY, glTF, 3MF or DAE file")->required();
+  app.add_option("--units", options->units, "mm, cm, m or in: what one unit of the file means");
+  app.add_flag("--json", options->json, "for programs");
+  command.runs(check, run);
+}
+
+void add_build(CLI::App& parent, Run& run) {
+  Command<BuildOptions> command(
+      parent, "build", "Build the viscosity field of a scene, or of one mesh",
+      "vicinity build cell.yaml -o cell.vicinity\n"
+      "  vicinity build vessel.stl --units mm --voxel-size 0.002 -o vessel.vicinity");
+  auto& [app, options] = command;
+  app.add_option("INPUT", options->input, "scene (.yaml, .yml) or mesh file")->required();
+  app.add_option("-o,--output", options->output, "the field to write")->required();
+  app.add_option("--units", options->units, "of a single mesh: mm, cm, m or in");
+  app.add_option("--meshes", options->meshes,
+                 "folder that relative mesh paths start at; default: that of the scene file");
+  app.add_option("--voxel-size", options->voxel_size, "edge of a voxel [m]");
+  app.add_option("--m", options->m, "voxels per rank, 1 to 8, for every object");
+  app.add_option("--q", options->q, "number of ranks, 0 to 32, for every object");
+  app.add_option("--shape", options->shape, "of the layers: cube, sphere or distance");
+  app.add_option("--coding", options->coding,
+                 "viscosity by rank: 32,25,20,... or linear, nonlinear, jnd, paper");
+  app.add_option("--skin", options->skin, "viscosity of boundary and inner voxels");
+  app.add_option("--boundary", options->boundary, "boundary voxels: exact or probe");
+  app.add_option("--inner", options->inner, "inner voxels: winding, raster or none");
+  app.add_option("--bounds", options->bounds, "of the workspace: x,y,z,x,y,z [m] or auto");
+  app.add_option("--threads", options->threads, "0: as many as the machine has")
+      ->check(CLI::Range(0, 1024));
+  app.add_flag("--json", options->json, "for programs");
+  command.runs(build, run);
+}
+
+void add_info(CLI::App& parent, Run& run) {
+  Command<InfoOptions> command(parent, "info", "Say what is in a field",
+                               "vicinity info cell.vicinity");
+  auto& [app, options] = command;
+  app.add_option("FIELD", options->field, "made by vicinity build")->required();
+  app.add_flag("--json", options->json, "for programs");
+  command.runs(info, run);
+}
+
+void add_export(CLI::App& parent, Run& run) {
+  Command<ExportOptions> command(
+      parent, "export", "Write a field for numpy (.npy), OpenVDB (.vdb) or ParaView (.vti)",
+      "vicinity export cell.vicinity -o cell.npy --what rank --box 0,0,0,0.5,0.5,0.5");
+  auto& [app, options] = command;
+  app.add_option("FIELD", options->field, "made by vicinity build")->required();
+  app.add_option("-o,--output", options->output, "file to write; its ending says the format")
+      ->required();
+  app.add_option("--what", options->what,
+                 "rank (boundary 0, empty -1, inner -2), viscosity, object or distance; default: "
+                 "rank, and in a .vdb viscosity too");
+  app.add_option("--box", options->box, "only this part: x,y,z,x,y,z [m]");
+  command.runs(export_field, run);
+}
+
+void add_query(CLI::App& parent, Run& run) {
+  Command<QueryOptions> command(parent, "query", "Say what is at a point",
+                                "vicinity query cell.vicinity 0.4 0.1 -0.25\n"
+                                "  vicinity query cell.vicinity --json < points.csv");
+  auto& [app, options] = command;
+  app.add_option("FIELD", options->field, "made by vicinity build")->required();
+  app.add_option("POINT", options->point, "x y z [m]; without it, lines x,y,z on standard input")
+      ->expected(3);
+  app.add_flag("--json", options->json, "for programs");
+  command.runs(query, run);
+}
+
+void add_trace(CLI::App& parent, Run& run) {
+  Command<TraceOptions> command(
+      parent, "trace", "Move a point along a straight track and write the drag it feels",
+      "vicinity trace cell.vicinity --from 0,0,0.1 --to 1,0,0.1 --speed 0.2 -o t.csv --plot t.svg");
+  auto& [app, options] = command;
+  app.add_option("FIELD", options->field, "made by vicinity build")->required();
+  app.add_option("--from", options->from, "x,y,z [m]")->required();
+  app.add_option("--to", options->to, "x,y,z [m]")->required();
+  app.add_option("--speed", options->speed, "[m/s]")->capture_default_str();
+  app.add_option("--rate", options->rate, "samples per second")->capture_default_str();
+  app.add_option("--area", options->area, "surface S of the point [m²]")->capture_default_str();
+  app.add_option("--memory", options->memory, "none, sustained, fading, short or rising")
+      ->capture_default_str();
+  app.add_option("--direction", options->direction,
+                 "all: oppose the whole velocity; closing: only what comes nearer")
+      ->capture_default_str();
+  app.add_option("--traversal", options->traversal,
+                 "swept: record every voxel passed; sampled: end points only")
+      ->capture_default_str();
+  app.add_option("--coding", options->coding,
+                 "try another one: 32,25,20,... or linear, nonlinear, jnd, paper");
+  app.add_option("-o,--output", options->output, "CSV file; default: standard output");
+  app.add_option("--plot", options->plot, "draw it too: .svg or .png");
+  command.runs(trace, run);
+}
+
+void add_slice(CLI::App& parent, Run& run) {
+  Command<SliceOptions> command(parent, "slice", "Draw the layers in a plane, as a picture",
+                                "vicinity slice cell.vicinity --z 0.04 -o s.png");
+  auto& [app, options] = command;
+  app.add_option("FIELD", options->field, "made by vicinity build")->required();
+  app.add_option("--x", options->x, "plane across x [m]");
+  app.add_option("--y", options->y, "plane across y [m]");
+  app.add_option("--z", options->z, "plane across z [m]");
+  app.add_option("--box", options->box, "only this part: x,y,z,x,y,z [m]");
+  app.add_option("-o,--output", options->output, "picture to write: .png or .svg")->required();
+  command.runs(slice, run);
+}
+
+void add_demo(CLI::App& parent, Run& run) {
+  Command<DemoOptions> command(parent, "demo",
+                               "Build, trace and picture a small hot cell; needs nothing of yours",
+                               "vicinity demo -o my-demo");
+  auto& [app, options] = command;
+  app.add_option("-o,--output", options->folder, "folder to leave everything in")
+      ->capture_default_str();
+  command.runs(demo, run);
+}
+
+// CLI11 only says that a word was not expected; people want to know which one was meant.
+void refuse_unknown_words(CLI::App& app, int argc, char** argv) {
+  if (argc < 2) return;
+  const std::string name = argv[1];
+  if (name.starts_with('-')) return;
+  const CLI::App* command = nullptr;
+  std::vector<std::string> commands;
+  for (const CLI::App* each : app.get_subcommands({})) {
+    commands.push_back(each->get_name());
+    if (each->get_name() == name) command = each;
+  }
+  if (command == nullptr) {
+    const std::string nearest = nearest_word(name, commands);
+    throw Error({.where = name,
+                 .what = "there is no such command",
+                 .hint = nearest.empty() ? "vicinity --help" : "vicinity " + nearest});
+  }
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command->get_options()) {
+    for (const std::string& long_name : option->get_lnames()) known.push_back("--" + long_name);
+  }
+  for (int n = 2; n < argc && std::string_view(argv[n]) != "--"; ++n) {
+    const std::string word = argv[n];
+    const std::string option = word.substr(0, word.find('='));
+    if (!option.starts_with("--") || command->get_option_no_throw(option) != nullptr) continue;
+    const std::string nearest = nearest_word(option, known);
+    throw Error({.where = option,
+                 .what = "vicinity " + name + " has no such option",
+                 .hint = nearest.empty() ? "vicinity " + name + " --help" : nearest});
+  }
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Feel how close a remote arm is to things before it touches them.", "vicinity");
+  app.set_version_flag("--version", "vicinity " VICINITY_VERSION);
+  app.require_subcommand(0, 1);
+  Run chosen;
+  add_demo(app, chosen);
+  add_check(app, chosen);
+  add_build(app, chosen);
+  add_info(app, chosen);
+  add_query(app, chosen);
+  add_trace(app, chosen);
+  add_slice(app, chosen);
+  add_export(app, chosen);
+  app.footer("Example:\n  vicinity demo");
+
+  refuse_unknown_words(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    const std::string name = argc > 1 ? std::string(" ") + argv[1] : "";
+    throw Error({.what = error.what(), .hint = "vicinity" + name + " --help"});
+  }
+  if (!chosen) {
+    std::cout << welcome;
+    return 0;
+  }
+  catch_interruptions();
+  const int code = chosen();
+  std::cout.flush();
+  if (!std::cout) throw std::runtime_error("standard output could not be written");
+  return code;
+}
+
+}  // namespace
+}  // namespace vicinity::cli
+
+int main(int argc, char** argv) {
+  using namespace vicinity::cli;
+  try {
+    return run(argc, argv);
+  } catch (const vicinity::Error& error) {
+    std::cerr << "vicinity: " << error.what() << '\n';
+    return unusable;
+  } catch (const Interrupted&) {
+    return interrupted;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "vicinity: this machine has too little memory for that; try a larger "
+                 "--voxel-size, smaller bounds, or fewer ranks\n";
+    return our_failure;
+  } catch (const std::exception& error) {
+    std::cerr << "vicinity: " << error.what()
+              << "; this should not have happened, and a report of it would help\n";
+    return our_failure;
+  }
+}

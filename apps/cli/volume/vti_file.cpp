@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "volume/vti_file.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+
+#include "fresh_file.h"
+
+namespace vicinity::cli {
+
+void write_vti(const ViscosityField& field, const VoxelBox& box, VoxelQuantity quantity,
+               const std::filesystem::path& path, const std::function<void(double)>& progress) {
+  const Workspace& grid = field.workspace();
+  const auto& [lo, hi] = box;
+  const std::string extent = fmt::format("{} {} {} {} {} {}", lo.i, hi.i, lo.j, hi.j, lo.k, hi.k);
+  FreshFile file(path);
+  file.write(fmt::format(
+      R"(<?xml version="1.0"?>
+<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+  <ImageData WholeExtent="{0}" Origin="{1:.17g} {2:.17g} {3:.17g}" Spacing="{4:.17g} {4:.17g} {4:.17g}">
+    <Piece Extent="{0}">
+      <CellData Scalars="{5}">
+        <DataArray type="{6}" Name="{5}" format="appended" offset="0"/>
+      </CellData>
+    </Piece>
+  </ImageData>
+  <AppendedData encoding="raw">
+   _)",
+      extent, grid.origin.x(), grid.origin.y(), grid.origin.z(), grid.voxel_size,
+      to_string(quantity), size_of(quantity) == 2 ? "Int16" : "Float32"));
+  const std::uint64_t bytes_of_data = size_of(quantity) * static_cast<std::uint64_t>(hi.i - lo.i) *
+                                      static_cast<std::uint64_t>(hi.j - lo.j) *
+                                      static_cast<std::uint64_t>(hi.k - lo.k);
+  file.write(&bytes_of_data, sizeof bytes_of_data);
+  VoxelPlanes planes(field, box, quantity, Fastest::x);
+  for (std::int32_t k = 0; k < planes.count(); ++k) {
+    const auto& bytes = planes.plane(k);
+    file.write(bytes.data(), bytes.size());
+    stop_if_interrupted();
+    progress(static_cast<double>(k + 1) / planes.count());
+  }
+  file.write("\n  </AppendedData>\n</VTKFile>\n");
+  file.commit();
+}
+
+}  // namespace vicinity::cli

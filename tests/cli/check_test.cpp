@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+// vicinity check: the verdict in words, in JSON, and in the exit code.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "program.h"
+
+namespace vicinity::cli_test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* open_square = R"(solid
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 25 0 0
+vertex 25 50 0
+endloop
+endfacet
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 25 50 0
+vertex 0 50 0
+endloop
+endfacet
+endsolid
+)";
+
+TEST(Check, JsonHasTheDocumentedKeys) {
+  const Folder folder;
+  folder.write("square.stl", open_square);
+  const Answer answer = folder.run({"check", "square.stl", "--units", "mm", "--json"});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  const auto json = answer.json();
+  EXPECT_EQ(json["verdict"], "usable");
+  EXPECT_EQ(json["triangles"], 2);
+  EXPECT_EQ(json["closed"], false);
+  EXPECT_EQ(json["shells"], 1);
+  EXPECT_DOUBLE_EQ(json["size"][0], 0.025);
+  EXPECT_DOUBLE_EQ(json["size"][1], 0.05);
+  EXPECT_EQ(json["size"][2], 0);
+  ASSERT_FALSE(json["problems"].empty());
+  for (const char* key : {"what", "count", "means"}) EXPECT_TRUE(json["problems"][0].contains(key));
+}
+
+TEST(Check, WithoutAUnitItShowsAllThreeReadings) {
+  const Folder folder;
+  folder.write("square.stl", open_square);
+  const Answer answer = folder.run({"check", "square.stl"});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  for (const char* reading : {"open", " mm if", " m if m", "if inches", "--units"}) {
+    EXPECT_THAT(answer.out, HasSubstr(reading));
+  }
+}
+
+TEST(Check, AFileWithoutAMeshIsUnusableForPeopleAndPrograms) {
+  const Folder folder;
+  folder.write("cut.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0");
+  const Answer answer = folder.run({"check", "cut.stl", "--json"});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_THAT(answer.err, HasSubstr("cut.stl"));
+  EXPECT_EQ(answer.json()["verdict"], "unusable");
+}
+
+TEST(Check, ATriangleWithoutExtentIsUnusable) {
+  const Folder folder;
+  folder.write("dot.stl",
+               "solid\nfacet normal 0 0 1\nouter loop\nvertex 1 1 1\nvertex 1 1 1\n"
+               "vertex 1 1 1\nendloop\nendfacet\nendsolid\n");
+  const Answer answer = folder.run({"check", "dot.stl", "--json"});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(answer.json()["verdict"], "unusable");
+}
+
+}  // namespace
+}  // namespace vicinity::cli_test
