@@ -3,8 +3,9 @@
 //
 // The build half by stage, each beside the plain way where there is one:
 //
+//   scripts/install_packages.sh --benchmarks
+//   cmake --preset release -DVICINITY_BENCHMARKS=ON && cmake --build --preset release
 //   VICINITY_DATA=../shared/data build/release/benchmarks/vicinity_benchmark
-//       --benchmark_repetitions=5 --benchmark_enable_random_interleaving=true
 //
 // Times are wall time. The argument after the name is the number of threads.
 
@@ -12,6 +13,7 @@
 #include <tbb/task_arena.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "layers/triple_loop.h"
@@ -66,11 +68,13 @@ void add_object(const NamedObject& object) {
       return distance_layers(object.mesh, *boundary, *inner, object.workspace, layers_m, layers_q);
     });
   }
-  benchmark::RegisterBenchmark(
-      ("rank_sphere_triple_loop/" + object.name + "/threads:1").c_str(),
-      [=](benchmark::State& state) {
-        run(state, 1, [&] { return triple_loop(*boundary, *inner, sphere, layers_q); });
-      })
+  benchmark::RegisterBenchmark(("rank_sphere_triple_loop/" + object.name + "/threads:1").c_str(),
+                               [=](benchmark::State& state) {
+                                 run(state, 1, [&] {
+                                   return triple_loop::ranked_neighbours(
+                                       *boundary, *inner, LayerShape::sphere, layers_m, layers_q);
+                                 });
+                               })
       ->Unit(benchmark::kMillisecond)
       ->UseRealTime()
       ->Iterations(1);  // seconds each
@@ -101,12 +105,16 @@ void write_scene(benchmark::State& state) {
 }
 BENCHMARK(write_scene)->Name("write/hot_cell")->UseRealTime()->Unit(benchmark::kMillisecond);
 
-const bool objects_added = [] {
-  for (const int voxels : lengths) {
-    for (const NamedObject& object : named_objects(voxels)) add_object(object);
-  }
-  return true;
-}();
-
 }  // namespace
 }  // namespace vicinity::benchmarks
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  for (const int voxels : vicinity::benchmarks::lengths) {
+    for (const auto& object : vicinity::benchmarks::named_objects(voxels)) {
+      vicinity::benchmarks::add_object(object);
+    }
+  }
+  benchmark::RunSpecifiedBenchmarks();
+}
