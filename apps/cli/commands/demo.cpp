@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "commands/slice.h"
@@ -32,6 +34,13 @@
 
 namespace vicinity::cli {
 namespace {
+
+// Where the running program lies, so that a first command can be copied as it stands.
+std::string this_program() {
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? "the program that printed this" : path.string();
+}
 
 struct DemoTrack {
   const char* name;
@@ -202,7 +211,8 @@ Page page_of(const std::filesystem::path& folder, const BuildResult& built,
                 "Vicinity wraps every object of a remote workplace in layers of viscosity. "
                 "Whoever moves the arm feels them as drag: fast near a part is heavy, slow is "
                 "light, standing still is free, and nothing ever pushes back. The commands below "
-                "are for a shell in the folder of this page."};
+                "are for a shell in the folder of this page; vicinity is the program that made it, "
+                "build/release/apps/cli/vicinity where it was not installed."};
   PageSection layers{
       .title = "The layers",
       .says = fmt::format("Cuts through the field of {}.", grid_in_words(built.field.workspace()))};
@@ -289,14 +299,15 @@ int demo(const DemoOptions& options, std::ostream& out, std::ostream& err) {
     hot_cell.vicinity      its field
     *.png, *.svg, *.csv    layers, drag, numbers
 
-  Then type
+  Then type, with vicinity for {program}
     vicinity query {folder}/hot_cell.vicinity 0.96 0.5 0.76
     vicinity slice {folder}/hot_cell.vicinity --z 0.98 -o flange.png
     vicinity build PART.stl --units mm --voxel-size 0.002 -o part.vicinity
 )",
-      fmt::arg("folder", folder.string()), fmt::arg("objects", built.field.objects().size()),
-      fmt::arg("triangles", grouped(triangles)), fmt::arg("boundary", grouped(report.boundary)),
-      fmt::arg("inner", grouped(report.inner)), fmt::arg("neighbour", grouped(report.neighbour)),
+      fmt::arg("program", this_program()), fmt::arg("folder", folder.string()),
+      fmt::arg("objects", built.field.objects().size()), fmt::arg("triangles", grouped(triangles)),
+      fmt::arg("boundary", grouped(report.boundary)), fmt::arg("inner", grouped(report.inner)),
+      fmt::arg("neighbour", grouped(report.neighbour)),
       fmt::arg("h", 1000 * built.field.workspace().voxel_size),
       fmt::arg("file", bytes(built.field.image().size())),
       fmt::arg("build", seconds(report.seconds.total)), fmt::arg("threads", report.threads),
