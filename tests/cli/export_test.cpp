@@ -225,7 +225,7 @@ TEST_F(SmallField, VdbIsWrittenWholeOrRefusedWithASentence) {
 }
 
 TEST_F(SmallField, AnAbsurdSizeIsRefusedBeforeAnythingIsWritten) {
-  build({"--bounds", "-90,-90,-90,90,90,90"});
+  build({"--bounds", "-45,-45,-45,45,45,45"});
   const Answer answer = folder.run({"export", "f.vicinity", "-o", "f.npy"});
   EXPECT_EQ(answer.code, 2);
   EXPECT_THAT(answer.err, HasSubstr("TB"));
