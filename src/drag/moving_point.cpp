@@ -64,8 +64,7 @@ struct Reach {
 }  // namespace
 
 double MovingPoint::advance(const ViscosityField& field, const MemoryWeights& weights,
-                            Traversal traversal, const Vec3& from_W,
-                            const Vec3& to_W) noexcept {
+                            Traversal traversal, const Vec3& from_W, const Vec3& to_W) noexcept {
   if (!to_W.allFinite()) return started_ ? memory_.effective(weights) : 0;
   const Workspace& workspace = field.workspace();
   Vec3 from = to_reachable_grid(workspace, from_W), to = to_reachable_grid(workspace, to_W);
