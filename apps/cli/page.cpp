@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "demo/page.h"
+#include "page.h"
 
 #include <cstdint>
 #include <fstream>
@@ -31,6 +31,13 @@ pre { font: 14px/1.5 "DejaVu Sans Mono", Menlo, Consolas, monospace; background:
 table { border-collapse: collapse; font-size: .88rem; margin: 1rem 0; }
 th, td { text-align: left; padding: .25rem 1.2rem .25rem 0; border-bottom: 1px solid #d5dade; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
+dl { display: grid; grid-template-columns: max-content minmax(0, 46rem); gap: .4rem 1.2rem;
+     margin: 1rem 0; }
+dt { color: #454d55; }
+dd { margin: 0; }
+dt.good, dt.bad { font-weight: bold; color: #0b6b43; }
+dt.bad { color: #b03a00; }
+.links { font-size: .88rem; }
 @media print {
   body { font-size: 10.5pt; max-width: none; padding: 0; }
   pre { font-size: 8.5pt; border: 1px solid #d5dade; }
@@ -86,9 +93,30 @@ std::string bytes_of(const std::filesystem::path& path) {
 
 std::string figure(const PagePicture& picture) {
   return "<figure>\n<h3>" + escaped(picture.title) + "</h3>\n<img alt=\"" + escaped(picture.title) +
-         "\" src=\"data:image/png;base64," + base64(bytes_of(picture.file)) + "\">\n<figcaption>" +
-         escaped(picture.says) + "\n<pre>" + escaped(picture.command) +
-         "</pre></figcaption>\n</figure>\n";
+         "\" src=\"data:image/" + (picture.file.extension() == ".svg" ? "svg+xml" : "png") +
+         ";base64," + base64(bytes_of(picture.file)) + "\">\n<figcaption>" + escaped(picture.says) +
+         (picture.command.empty() ? "" : "\n<pre>" + escaped(picture.command) + "</pre>") +
+         "</figcaption>\n</figure>\n";
+}
+
+std::string notes(const std::vector<PageNote>& notes) {
+  std::string html = "<dl>\n";
+  for (const PageNote& note : notes) {
+    const char* const term = note.tone == PageNote::Tone::good  ? "<dt class=\"good\">"
+                             : note.tone == PageNote::Tone::bad ? "<dt class=\"bad\">"
+                                                                : "<dt>";
+    html += term + escaped(note.label) + "</dt><dd>" + escaped(note.says) + "</dd>\n";
+  }
+  return html + "</dl>\n";
+}
+
+std::string links(const std::vector<std::string>& files) {
+  std::string html = "<p class=\"links\">Data: ";
+  for (const std::string& file : files) {
+    if (&file != &files.front()) html += ", ";
+    html += "<a href=\"" + escaped(file) + "\">" + escaped(file) + "</a>";
+  }
+  return html + "</p>\n";
 }
 
 bool is_number(const std::string& cell) {
@@ -112,8 +140,9 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string section(const PageSection& section) {
-  std::string html =
-      "<h2>" + escaped(section.title) + "</h2>\n<p>" + escaped(section.says) + "</p>\n";
+  std::string html = "<h2>" + escaped(section.title) + "</h2>\n";
+  if (!section.says.empty()) html += "<p>" + escaped(section.says) + "</p>\n";
+  if (!section.notes.empty()) html += notes(section.notes);
   for (const PagePicture& picture : section.pictures) html += figure(picture);
   if (!section.table.empty()) html += table(section.table);
   if (!section.commands.empty()) {
@@ -121,6 +150,7 @@ std::string section(const PageSection& section) {
     for (const std::string& command : section.commands) html += escaped(command) + '\n';
     html += "</pre>\n";
   }
+  if (!section.links.empty()) html += links(section.links);
   return html;
 }
 
