@@ -19,6 +19,7 @@
 #include "commands/export.h"
 #include "commands/info.h"
 #include "commands/query.h"
+#include "commands/reproduce.h"
 #include "commands/slice.h"
 #include "commands/trace.h"
 #include "interruption.h"
@@ -44,6 +45,7 @@ constexpr const char* welcome =
   vicinity trace F ...          the drag on a point along a straight track
   vicinity slice F ...          a picture of the layers
   vicinity export F -o ...      for numpy, ParaView, Blender
+  vicinity reproduce -o DIR     the paper's figures and tables, ours beside theirs
 
 Each of them explains itself with --help, and shows an example.
 )";
@@ -190,6 +192,16 @@ void add_demo(CLI::App& parent, Run& run) {
   command.runs(demo, run);
 }
 
+void add_reproduce(CLI::App& parent, Run& run) {
+  Command<ReproduceOptions> command(
+      parent, "reproduce", "Make every figure and table of the paper, ours beside theirs",
+      "vicinity reproduce -o report\n  vicinity reproduce --only fig22 -o report");
+  auto& [app, options] = command;
+  app.add_option("-o,--output", options->folder, "folder to leave the report in")->required();
+  app.add_option("--only", options->only, "one item, as fig22 or table1");
+  command.runs(reproduce, run);
+}
+
 // CLI11 only says that a word was not expected; people want to know which one was meant.
 void refuse_unknown_words(CLI::App& app, int argc, char** argv) {
   if (argc < 2) return;
@@ -235,6 +247,7 @@ int run(int argc, char** argv) {
   add_trace(app, chosen);
   add_slice(app, chosen);
   add_export(app, chosen);
+  add_reproduce(app, chosen);
   app.footer("Example:\n  vicinity demo");
 
   refuse_unknown_words(app, argc, argv);
