@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "reproduce/layers.h"
 #include "reproduce/tracks.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/geometry/nearest_word.h"
@@ -23,6 +24,74 @@ const std::vector<Item>& items() {
        "names no "
        "object and no speed.",
        fig5},
+      {"fig16",
+       {"fig15", "fig12c"},
+       "Ranked neighbours around a cube",
+       "One pass of the floating analyser zone with m = 1 turns every empty voxel of the 27 around "
+       "a boundary voxel "
+       "into rank 1; repeating it on its own result grows the graded zone.",
+       "A cube of 20 voxels; the paper shows no size.",
+       fig16},
+      {"fig17",
+       {},
+       "Cube FAZ of 5, 7 and 9 around circular and complex cylinders",
+       "Six layers. A bigger zone makes thicker layers; the outer ones lose the object's shape, "
+       "since a cube is "
+       "symmetric about the axes only.",
+       "Circular cylinder of radius 20; complex cylinder of radius 40 with one narrow and four "
+       "wider concavities. Reach is the "
+       "true distance of a layer's outermost voxels plus half a voxel, over the whole object, ends "
+       "and edges included.",
+       fig17},
+      {"fig18",
+       {},
+       "Cube against sphere, m = 2",
+       "Six layers around the circular and the complex cylinder. The first layers are nearly "
+       "alike; at higher rank the sphere is "
+       "much truer. The narrow concavity A fills up, the wider B to E stay open.",
+       "The same cylinders. A concavity counts as filled where the contour of the third layer "
+       "shows less than a quarter "
+       "of its depth, and as open where it shows more than half.",
+       fig18},
+      {"fig19",
+       {},
+       "Spheres of m = 3 and 4; above the top",
+       "Six layers by spheres in FAZ 7 and 9 around circular, complex and hollow cylinders, at mid "
+       "height and above the top, where all voxels "
+       "are neighbours from the body below.",
+       "The hollow cylinder has radii 36 and 28, so that its bore is nearly full of layers. Kept "
+       "shape is read as a spread of "
+       "reach below a quarter of it.",
+       fig19},
+      {"table1",
+       {},
+       "Performance of the elements, in numbers",
+       "In words: layers thin to wide; cubes distort diagonals highly, spheres moderately to "
+       "little; redundant "
+       "computation rises with the size of a cube, and for spheres it is low, lower, and lower "
+       "still.",
+       "A ball of radius 10, because its layers show an element in every direction; six ranks; m = "
+       "4 beside the paper's m = 1, 2, 3. Thickness is "
+       "the mean reach of rank 6 over 6, least and most likewise; distortion compares reach along "
+       "diagonals and axes. Redundant is "
+       "the share of visited cells that changed nothing.",
+       table1},
+      {"fig20",
+       {},
+       "The cone, m = 1 to 4",
+       "Vertical sections through the apex for spheres of m = 1, 3 and 4, and horizontal ones from "
+       "z = 20 to 40 for m = 2 and 4.",
+       "Horizontal sections at z = 20, 27, 33 and 40: the paper names the first and the last. "
+       "Vertical sections for all four.",
+       fig20},
+      {"fig21",
+       {},
+       "The wedge, seven layers of m = 3",
+       "Seen from x, from below and from y; the second view lies above the junction of the V.",
+       "A block of 60 x 60 x 40 voxels with a V 28 deep and two thirds of the block wide. For "
+       "seven layers we use the linear coding, since the "
+       "text's has six values.",
+       fig21},
       {"fig22",
        {},
        "Six tracks by the cone",

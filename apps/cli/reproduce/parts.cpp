@@ -36,7 +36,8 @@ Part circular_cylinder() {
 
 Part complex_cylinder() {
   return {"complex_cylinder",
-          at({100.3, 60.7, 40}, primitive::complex_cylinder(40, 40), -20),
+          at({complex_cylinder_x, complex_cylinder_y, 40},
+             primitive::complex_cylinder(complex_cylinder_radius, 40), -20),
           {200, 150, 104}};
 }
 

@@ -20,6 +20,8 @@ Part circular_cylinder();
 /// placed so that a point at y = 20 passes both lips of one wide concavity, one nearer than the
 /// other, without touching (fig. 23f).
 Part complex_cylinder();
+inline constexpr double complex_cylinder_x = 100.3, complex_cylinder_y = 60.7,
+                        complex_cylinder_radius = 40;
 
 /// Outer radius 36, inner radius 28: six layers of m = 4 do not quite meet in its middle.
 Part hollow_cylinder();
@@ -27,6 +29,8 @@ Part hollow_cylinder();
 /// The block with a V along y: 60 x 60 x 40, the V 28 deep (fig. 12).
 Part wedge();
 inline constexpr double wedge_bottom = 30, wedge_top = 70, wedge_v_depth = 28;
+/// Voxel i lies opposite of wedge_mirror - i.
+inline constexpr int wedge_mirror = 128;
 
 /// 20 x 20 x 20 (fig. 12c, 16).
 Part cube();

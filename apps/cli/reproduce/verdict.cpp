@@ -8,16 +8,19 @@
 namespace vicinity::report {
 
 Verdict verdict_of(const std::vector<Check>& checks) {
-  Verdict verdict;
-  verdict.agrees =
-      !checks.empty() && std::ranges::all_of(checks, [](const Check& c) { return c.holds; });
-  for (const Check& check : checks) {
-    if (check.holds != verdict.agrees) continue;
-    if (!verdict.why.empty()) verdict.why += "; ";
-    verdict.why += (check.holds ? "" : "not so: ") + check.claim + " (" + check.measured + ")";
+  if (checks.empty()) return {false, "nothing was measured"};
+  const auto all = checks.size();
+  const auto fail = static_cast<std::size_t>(
+      std::ranges::count_if(checks, [](const Check& check) { return !check.holds; }));
+  const auto with_numbers = [](const Check& c) { return c.claim + " (" + c.measured + ")"; };
+  if (fail == 0) {
+    return {true, "all " + std::to_string(all) + " checks hold, first: " + with_numbers(checks[0])};
   }
-  if (checks.empty()) verdict.why = "nothing was measured";
-  return verdict;
+  std::string why = std::to_string(fail) + " of " + std::to_string(all) + " checks do not hold";
+  for (const Check& check : checks) {
+    if (!check.holds) why += "; not so: " + with_numbers(check);
+  }
+  return {false, why};
 }
 
 }  // namespace vicinity::report

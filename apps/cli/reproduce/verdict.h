@@ -21,8 +21,8 @@ struct Verdict {
   std::string why;  ///< one line
 };
 
-/// Agrees where there is a check and all of them hold. `why` then gives each claim with its
-/// numbers, else those that do not hold.
+/// Agrees where there is a check and all of them hold. `why` gives the first claim with its
+/// numbers, or all that do not hold.
 Verdict verdict_of(const std::vector<Check>& checks);
 
 }  // namespace vicinity::report

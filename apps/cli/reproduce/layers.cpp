@@ -1,0 +1,391 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reproduce/layers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "reproduce/csv_table.h"
+#include "reproduce/figures.h"
+#include "reproduce/parts.h"
+#include "reproduce/pass.h"
+
+namespace vicinity::report {
+namespace {
+
+constexpr int ranks = 6;
+// A cube of m = 4 reaches this far along its space diagonal.
+constexpr int farthest_reach = 44;
+
+std::string name_of(LayerShape shape, int m) {
+  return fmt::format("{} m = {}", to_string(shape), m);
+}
+
+// Layers of several elements around one part, each with a section and the checks of its ranks.
+struct Gallery {
+  const Workshop& workshop;
+  std::string item;
+  Outcome outcome = {};
+  std::vector<Wrapping> wrappings = {};
+  std::vector<RankFit> fits = {};
+
+  ViscosityField add(const Part& part, const ViscosityField& distances, LayerShape shape, int m,
+                     int z, const std::string& says = "") {
+    ViscosityField field = workshop.field(part, {.m = m, .q = ranks, .shape = shape});
+    fits.push_back(rank_fit(part.name + ", " + name_of(shape, m), field, distances, m));
+    wrappings.push_back({part.name, shape, m, layer_reaches(field, distances)});
+    outcome.figures.push_back(section(
+        workshop, fmt::format("{}/{}_{}_m{}_z{}.png", item, part.name, to_string(shape), m, z),
+        field, 2, z,
+        fmt::format("{}, {}, FAZ {}, z = {}", part.name, to_string(shape), 2 * m + 1, z), says));
+    return field;
+  }
+
+  void write_reaches() {
+    CsvTable table("part,element,m,rank,least_vox,mean_vox,most_vox");
+    outcome.table = {{"part", "element", "m", "reach of rank 1", "least", "most", "reach of rank 6",
+                      "least", "most"}};
+    for (const Wrapping& w : wrappings) {
+      for (const LayerReach& reach : w.reaches) {
+        table.row(w.part, to_string(w.shape), w.m, reach.rank, reach.least, reach.mean, reach.most);
+      }
+      const auto number = [](double value) { return fmt::format("{:.1f}", value); };
+      const LayerReach &first = w.reaches.front(), &last = w.reaches.back();
+      outcome.table.push_back({w.part, to_string(w.shape), fmt::format("{}", w.m),
+                               number(first.mean), number(first.least), number(first.most),
+                               number(last.mean), number(last.least), number(last.most)});
+    }
+    outcome.data.push_back(workshop.file(item + "/reaches.csv"));
+    table.write(outcome.data.back());
+  }
+
+  Outcome finished(std::vector<Check> checks) {
+    checks.push_back(ranks_follow_distance(fits));
+    outcome.checks = std::move(checks);
+    return std::move(outcome);
+  }
+};
+
+std::string spreads(const std::vector<Wrapping>& wrappings, std::size_t rank) {
+  std::string text;
+  for (const Wrapping& w : wrappings) {
+    text += fmt::format("{}{} {} {:.1f}", text.empty() ? "" : ", ", w.part, name_of(w.shape, w.m),
+                        w.reaches.at(rank - 1).spread());
+  }
+  return text;
+}
+
+}  // namespace
+
+// --------------------------------------------------------------------------------------- fig. 16
+
+namespace {
+
+FirstNeighbours first_neighbours(const ViscosityField& field) {
+  FirstNeighbours first;
+  const auto record = [&](const VoxelIndex& v) { return field.records()[field.code_at(v)]; };
+  const VoxelIndex& dims = field.workspace().dims;
+  for (std::int32_t k = 1; k + 1 < dims.k; ++k) {
+    for (std::int32_t j = 1; j + 1 < dims.j; ++j) {
+      for (std::int32_t i = 1; i + 1 < dims.i; ++i) {
+        const VoxelKind kind = record({i, j, k}).kind;
+        if (kind == VoxelKind::boundary || kind == VoxelKind::inner) continue;
+        bool beside_boundary = false;
+        for (std::int32_t n = 0; n < 27; ++n) {
+          beside_boundary |=
+              record({i + n % 3 - 1, j + n / 3 % 3 - 1, k + n / 9 - 1}).kind == VoxelKind::boundary;
+        }
+        const bool ranked = record({i, j, k}).rank == 1;
+        first.ranked += ranked ? 1 : 0;
+        first.missing += beside_boundary && !ranked ? 1 : 0;
+        first.beyond += ranked && !beside_boundary ? 1 : 0;
+      }
+    }
+  }
+  return first;
+}
+
+}  // namespace
+
+std::vector<Check> check_fig16(const FirstNeighbours& first) {
+  return {{"every empty voxel of the 27 around a boundary voxel becomes rank 1",
+           fmt::format("{} voxels, {} left out", first.ranked, first.missing),
+           first.ranked > 0 && first.missing == 0},
+          {"no other voxel does", fmt::format("{} others", first.beyond), first.beyond == 0}};
+}
+
+Outcome fig16(Workshop& workshop) {
+  const Part part = cube();
+  const ViscosityField once = workshop.field(part, {.m = 1, .q = 1, .shape = LayerShape::cube});
+  const ViscosityField grown = workshop.field(part, {.m = 1, .q = 6, .shape = LayerShape::cube});
+  const FirstNeighbours first = first_neighbours(once);
+  Outcome outcome{.checks = check_fig16(first), .figures = {}};
+  outcome.checks.push_back(
+      ranks_follow_distance({rank_fit("six passes", grown, workshop.distances(part, 16), 1)}));
+  outcome.figures = {
+      section(workshop, "fig16/one_rank.png", once, 2, 30, "One pass: rank 1",
+              "A layer of the cube: inner voxels, boundary voxels, and around them the neighbours "
+              "of rank 1."),
+      section(workshop, "fig16/six_ranks.png", grown, 2, 30, "Six passes: six graded neighbours",
+              "The pass repeated on its own result.")};
+  CsvTable table("rank,voxels");
+  const std::vector<std::uint64_t>& counts = grown.objects().front().ranks;
+  for (std::size_t n = 0; n < counts.size(); ++n) table.row(n + 1, counts[n]);
+  outcome.data = {workshop.file("fig16/ranks.csv")};
+  table.write(outcome.data.front());
+  return outcome;
+}
+
+// ----------------------------------------------------------------------------------- fig. 17 - 19
+
+std::vector<Check> check_fig17(const std::vector<Wrapping>& cubes) {
+  bool wider = true, distorted = true;
+  std::string zones;
+  for (std::size_t n = 0; n < cubes.size(); ++n) {
+    const LayerReach &first = cubes[n].reaches.front(), &last = cubes[n].reaches.back();
+    if (n > 0 && cubes[n].part == cubes[n - 1].part) {
+      wider &= last.mean > cubes[n - 1].reaches.back().mean;
+    }
+    distorted &= last.spread() > 2 * first.spread() && last.most > 1.3 * last.least;
+    zones += fmt::format("{}{} FAZ {}: {:.1f}", zones.empty() ? "" : ", ", cubes[n].part,
+                         2 * cubes[n].m + 1, last.mean);
+  }
+  return {{"a bigger FAZ covers a wider zone in as many layers",
+           "mean reach of rank 6: " + zones + " voxels", wider},
+          {"outer layers lose the shape of the object",
+           "least to most reach of rank 1: " + spreads(cubes, 1) +
+               "; of rank 6: " + spreads(cubes, ranks) + " voxels",
+           distorted}};
+}
+
+Outcome fig17(Workshop& workshop) {
+  Gallery gallery{workshop, "fig17"};
+  for (const Part& part : {circular_cylinder(), complex_cylinder()}) {
+    const ViscosityField distances = workshop.distances(part, farthest_reach);
+    for (const int m : {2, 3, 4}) gallery.add(part, distances, LayerShape::cube, m, 40);
+  }
+  gallery.write_reaches();
+  return gallery.finished(check_fig17(gallery.wrappings));
+}
+
+std::vector<Check> check_fig18(const std::vector<Wrapping>& pairs,
+                               const std::vector<Concavity>& concavities) {
+  bool same_first = true, better_last = true;
+  std::string first_layers;
+  for (std::size_t n = 0; n + 1 < pairs.size(); n += 2) {
+    const Wrapping &cube = pairs[n], &sphere = pairs[n + 1];
+    const double differ = std::abs(cube.reaches.front().mean - sphere.reaches.front().mean);
+    same_first &= differ < 1;
+    better_last &= sphere.reaches.back().spread() < cube.reaches.back().spread();
+    first_layers += fmt::format("{}{} {:.2f}", n == 0 ? "" : ", ", cube.part, differ);
+  }
+  // What the contour of the third layer still shows of a concavity, as a share of its depth.
+  constexpr std::size_t third = 3;
+  const auto left_of = [](const Concavity& each) {
+    return each.dip_by_rank.at(third) / each.depth;
+  };
+  bool others_open = concavities.size() > 1;
+  std::string shares;
+  for (std::size_t n = 1; n < concavities.size(); ++n) {
+    others_open &= left_of(concavities[n]) > 0.5;
+    shares += fmt::format("{}{:.0f} wide: {:.0f} %", n == 1 ? "" : ", ", concavities[n].mouth,
+                          100 * left_of(concavities[n]));
+  }
+  const bool any = !concavities.empty();
+  return {{"in the first layer the difference is not appreciable",
+           "mean reach differs by " + first_layers + " voxels", same_first},
+          {"at higher rank the sphere is truer to the shape",
+           "least to most reach of rank 6: " + spreads(pairs, ranks) + " voxels", better_last},
+          {"the narrow concavity A fills up",
+           any ? fmt::format(
+                     "{:.0f} wide, {:.0f} deep; the third layer still shows {:.0f} % of its depth",
+                     concavities[0].mouth, concavities[0].depth, 100 * left_of(concavities[0]))
+               : "no concavity found",
+           any && left_of(concavities[0]) < 0.25},
+          {"the wider concavities B to E stay open",
+           "the third layer still shows of their depth: " + shares, others_open}};
+}
+
+Outcome fig18(Workshop& workshop) {
+  Gallery gallery{workshop, "fig18"};
+  std::vector<Concavity> found;
+  for (const Part& part : {circular_cylinder(), complex_cylinder()}) {
+    const ViscosityField distances = workshop.distances(part, farthest_reach);
+    gallery.add(part, distances, LayerShape::cube, 2, 40);
+    const ViscosityField field = gallery.add(part, distances, LayerShape::sphere, 2, 40);
+    if (part.name == "complex_cylinder") {
+      found =
+          concavities(field, complex_cylinder_x, complex_cylinder_y, 40, complex_cylinder_radius);
+    }
+  }
+  gallery.write_reaches();
+  CsvTable table("mouth_vox,depth_vox,rank,dip_vox");
+  for (const Concavity& each : found) {
+    for (std::size_t n = 0; n < each.dip_by_rank.size(); ++n) {
+      table.row(each.mouth, each.depth, n, each.dip_by_rank[n]);
+    }
+  }
+  gallery.outcome.data.push_back(workshop.file("fig18/concavities.csv"));
+  table.write(gallery.outcome.data.back());
+  return gallery.finished(check_fig18(gallery.wrappings, found));
+}
+
+std::vector<Check> check_fig19(const std::vector<Wrapping>& spheres, std::uint64_t body_above_top,
+                               std::uint64_t ranked_above_top) {
+  bool even = true;
+  for (const Wrapping& w : spheres)
+    even &= w.reaches.back().spread() < 0.25 * w.reaches.back().mean;
+  return {{"six layers of m = 3 and 4 keep the shape",
+           "least to most reach of rank 6: " + spreads(spheres, ranks) +
+               " voxels, which should be less than a quarter of the reach",
+           even},
+          {"above the top there are only neighbours, of the body below",
+           fmt::format("{} ranked voxels and {} of a body", ranked_above_top, body_above_top),
+           ranked_above_top > 0 && body_above_top == 0}};
+}
+
+Outcome fig19(Workshop& workshop) {
+  Gallery gallery{workshop, "fig19"};
+  constexpr int above_top = 72;
+  std::uint64_t body = 0, ranked = 0;
+  for (const Part& part : {circular_cylinder(), complex_cylinder(), hollow_cylinder()}) {
+    const ViscosityField distances = workshop.distances(part, farthest_reach);
+    for (const int m : {3, 4}) {
+      const ViscosityField field = gallery.add(part, distances, LayerShape::sphere, m, 40);
+      if (m != 4) continue;
+      gallery.outcome.figures.push_back(
+          section(workshop, fmt::format("fig19/{}_above_top.png", part.name), field, 2, above_top,
+                  fmt::format("{}, m = 4, above the top, z = {}", part.name, above_top),
+                  "The body ends at z = 60."));
+      const VoxelIndex& dims = field.workspace().dims;
+      for (std::int32_t j = 0; j < dims.j; ++j) {
+        for (std::int32_t i = 0; i < dims.i; ++i) {
+          const VoxelKind kind = field.records()[field.code_at({i, j, above_top})].kind;
+          ranked += kind == VoxelKind::neighbour ? 1 : 0;
+          body += kind == VoxelKind::boundary || kind == VoxelKind::inner ? 1 : 0;
+        }
+      }
+    }
+  }
+  gallery.write_reaches();
+  return gallery.finished(check_fig19(gallery.wrappings, body, ranked));
+}
+
+// -------------------------------------------------------------------------------------- fig. 20-21
+
+std::vector<Check> check_fig20(const std::vector<ConeSection>& sections) {
+  bool shrink = true, round = true, thicker = true;
+  std::string radii;
+  double worst = 0;
+  for (std::size_t n = 0; n < sections.size(); ++n) {
+    const auto [least, most] = std::ranges::minmax(sections[n].radii);
+    const auto mean = [&](const ConeSection& s) {
+      double sum = 0;
+      for (const double r : s.radii) sum += r;
+      return sum / static_cast<double>(s.radii.size());
+    };
+    // The paper shows horizontal sections of m = 2 and 4.
+    if (sections[n].m % 2 == 0) {
+      worst = std::max(worst, (most - least) / mean(sections[n]));
+      round &= most - least < 0.15 * mean(sections[n]);
+    }
+    if (n > 0 && sections[n].m == sections[n - 1].m) {
+      shrink &= mean(sections[n]) < mean(sections[n - 1]);
+    }
+    for (const ConeSection& other : sections) {
+      if (other.z == sections[n].z && other.m > sections[n].m) {
+        thicker &= mean(other) > mean(sections[n]) + other.m - sections[n].m;
+      }
+    }
+    radii += fmt::format("{}m = {}, z = {}: {:.1f}", n == 0 ? "" : "; ", sections[n].m,
+                         sections[n].z, mean(sections[n]));
+  }
+  return {
+      {"sections shrink towards the apex", "mean radius of rank 6, " + radii + " voxels", shrink},
+      {"a larger sphere covers a wider zone", "as above", thicker},
+      {"layers stay round",
+       fmt::format("the radius of a section of m = 2 or 4 varies by {:.0f} % at most", 100 * worst),
+       round}};
+}
+
+Outcome fig20(Workshop& workshop) {
+  const Part part = cone();
+  const ViscosityField distances = workshop.distances(part, 32);
+  Outcome outcome;
+  std::vector<ConeSection> sections;
+  std::vector<RankFit> fits;
+  CsvTable table("m,z,degree,radius_vox");
+  for (const int m : {1, 2, 3, 4}) {
+    const ViscosityField field = workshop.field(part, {.m = m, .q = ranks});
+    fits.push_back(rank_fit(name_of(LayerShape::sphere, m), field, distances, m));
+    outcome.figures.push_back(section(workshop, fmt::format("fig20/vertical_m{}.png", m), field, 1,
+                                      static_cast<int>(cone_axis),
+                                      fmt::format("Through the apex, sphere m = {}", m), ""));
+    for (const int z : {20, 27, 33, 40}) {
+      sections.push_back({m, z, contour(field, cone_axis, cone_axis, z, ranks)});
+      for (std::size_t degree = 0; degree < sections.back().radii.size(); ++degree) {
+        table.row(m, z, degree, sections.back().radii[degree]);
+      }
+      if (m != 2 && m != 4) continue;
+      outcome.figures.push_back(
+          section(workshop, fmt::format("fig20/horizontal_m{}_z{}.png", m, z), field, 2, z,
+                  fmt::format("Horizontal, sphere m = {}, z = {}", m, z), ""));
+    }
+  }
+  outcome.checks = check_fig20(sections);
+  outcome.checks.push_back(ranks_follow_distance(fits));
+  outcome.data = {workshop.file("fig20/contours_of_rank_6.csv")};
+  table.write(outcome.data.front());
+  return outcome;
+}
+
+std::vector<Check> check_fig21(const std::vector<std::uint64_t>& by_rank, std::uint64_t unequal) {
+  std::uint64_t all = 0;
+  for (const std::uint64_t count : by_rank) all += count;
+  return {{"seven layers form around the wedge, and none is empty",
+           fmt::format("{} voxels of rank 1 to {}", fmt::join(by_rank, ", "), by_rank.size()),
+           by_rank.size() == 7 && std::ranges::none_of(by_rank, [](auto n) { return n == 0; })},
+          {"both flanks of the V are wrapped alike",
+           fmt::format("{} of {} voxels differ from their mirror image", unequal, all),
+           100 * unequal < all}};
+}
+
+Outcome fig21(Workshop& workshop) {
+  const Part part = wedge();
+  constexpr int q = 7, m = 3;
+  const ViscosityField field =
+      workshop.field(part, {.m = m, .q = q, .coding = named_coding("linear", q)});
+  std::uint64_t unequal = 0;
+  const VoxelIndex& dims = field.workspace().dims;
+  for (std::int32_t k = 0; k < dims.k; ++k) {
+    for (std::int32_t j = 0; j < dims.j; ++j) {
+      for (std::int32_t i = 0; i <= wedge_mirror; ++i) {
+        unequal += field.code_at({i, j, k}) != field.code_at({wedge_mirror - i, j, k}) ? 1 : 0;
+      }
+    }
+  }
+  Outcome outcome{.checks = check_fig21(field.objects().front().ranks, unequal), .figures = {}};
+  outcome.checks.push_back(
+      ranks_follow_distance({rank_fit("the wedge", field, workshop.distances(part, 28), m)}));
+  constexpr int above_junction = 60;
+  outcome.figures = {
+      section(workshop, "fig21/seen_from_x.png", field, 0, 64, "As seen from x",
+              "Through the bottom of the V: the block is as high as its junction here."),
+      section(workshop, "fig21/seen_from_z.png", field, 2, above_junction,
+              fmt::format("As seen along z, z = {}", above_junction),
+              "Above the junction of the V: two flanks, and layers between them."),
+      section(workshop, "fig21/seen_from_y.png", field, 1, 64, "As seen from y",
+              "The V narrows downwards, and its layers with it.")};
+  CsvTable table("rank,voxels");
+  const std::vector<std::uint64_t>& counts = field.objects().front().ranks;
+  for (std::size_t n = 0; n < counts.size(); ++n) table.row(n + 1, counts[n]);
+  outcome.data = {workshop.file("fig21/ranks.csv")};
+  table.write(outcome.data.front());
+  return outcome;
+}
+
+}  // namespace vicinity::report
