@@ -7,6 +7,7 @@
 
 #include "reproduce/layers.h"
 #include "reproduce/tracks.h"
+#include "reproduce/voxelisation.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/geometry/nearest_word.h"
 
@@ -24,8 +25,45 @@ const std::vector<Item>& items() {
        "names no "
        "object and no speed.",
        fig5},
+      {"fig9",
+       {},
+       "Voxels of a cylinder",
+       "The top layer is surface voxels only; an intermediate layer is a closed contour of them, "
+       "filled with body voxels.",
+       "Radius 20, from z = 20 to 60, 128 facets. Areas count a boundary voxel as half inside.",
+       fig9},
+      {"fig11",
+       {},
+       "Probe vectors",
+       "Grid lines should not run parallel to a triangle: lines normal to the largest face of its "
+       "bounding brick "
+       "intersect it reliably.",
+       "Five parts. Against the exact definition (every voxel a triangle passes through), with the "
+       "paper's choice, with z lines "
+       "only, and with the smallest face. Lines run through voxel centres; a voxel met twice or "
+       "more is doubled.",
+       fig11},
+      {"fig12",
+       {},
+       "Voxels of the wedge and the cube",
+       "STL objects become voxel objects of the same shape.",
+       "Wedge: a block of 60 x 60 x 40 with a V 28 deep and 40 wide; cube of 20. The cube's "
+       "neighbours are in fig16.",
+       fig12},
+      {"fig13",
+       {},
+       "Voxels of the cone",
+       "Horizontal sections, and the vertical section through the apex.",
+       "The cone of figure 22: height 45, base radius 25, 256 facets.",
+       fig13},
+      {"fig14",
+       {},
+       "Voxels of the wedge at three heights",
+       "Sections V1 to V3, starting from the base, of the block with the V.",
+       "z = 35, 50 and 62: one below the junction of the V at z = 42, two above.",
+       fig14},
       {"fig16",
-       {"fig15", "fig12c"},
+       {"fig15"},
        "Ranked neighbours around a cube",
        "One pass of the floating analyser zone with m = 1 turns every empty voxel of the 27 around "
        "a boundary voxel "

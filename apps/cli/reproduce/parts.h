@@ -28,7 +28,7 @@ Part hollow_cylinder();
 
 /// The block with a V along y: 60 x 60 x 40, the V 28 deep (fig. 12).
 Part wedge();
-inline constexpr double wedge_bottom = 30, wedge_top = 70, wedge_v_depth = 28;
+inline constexpr double wedge_bottom = 30, wedge_top = 70, wedge_v_depth = 28, wedge_mouth = 40;
 /// Voxel i lies opposite of wedge_mirror - i.
 inline constexpr int wedge_mirror = 128;
 

@@ -56,6 +56,8 @@ ViscosityField Workshop::field(const Part& part, const Layers& layers) const {
   object.q = layers.q;
   object.layers = layers.shape;
   object.coding = layers.coding;
+  object.boundary = layers.boundary;
+  object.inner = layers.inner;
   Scene scene;
   scene.voxel_size = voxel_m;
   scene.bounds = Box(Vec3::Zero(), voxel_m * Vec3(part.dims.i, part.dims.j, part.dims.k));

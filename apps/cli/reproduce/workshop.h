@@ -29,6 +29,8 @@ struct Layers {
   int m = 4, q = 6;
   LayerShape shape = LayerShape::sphere;
   Coding coding = named_coding("paper", 6);
+  BoundaryMethod boundary = BoundaryMethod::exact;
+  InnerMethod inner = InnerMethod::winding;
 };
 
 class Workshop {
