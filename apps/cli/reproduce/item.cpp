@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "reproduce/layers.h"
+#include "reproduce/memory.h"
 #include "reproduce/tracks.h"
 #include "reproduce/voxelisation.h"
 #include "vicinity/geometry/error.h"
@@ -160,6 +161,47 @@ const std::vector<Item>& items() {
        "On a straight path near the cone drag grows with speed, and more so the nearer R is.",
        "0.25, 0.5 and 1 m/s on the second track of figure 22: the paper names neither.",
        fig24},
+      {"fig26",
+       {"fig25", "fig27"},
+       "Memory on the y = 20 track, I to III",
+       "Without memory drag is stepped; ten values of equal weight smooth it and come late; fading "
+       "weights smooth it with less delay. Linear "
+       "coding in figure 26, nonlinear in 27.",
+       "Ten layers of m = 4, because the linear coding has ten values; the nonlinear one is zero "
+       "from its eighth on. Memory moves on with each new voxel; the "
+       "fading weights are used as printed.",
+       fig26},
+      {"fig28",
+       {"fig29"},
+       "Short memory: fine steps",
+       "Three values of equal weight (IVa, IVb) turn each step into fine ones, very close to the "
+       "original, like rubbing on comb teeth; the linear coding "
+       "rises at a constant rate, the nonlinear one steeply near the object.",
+       "As in fig26. Very close is read as less than 3 % of the peak in the mean; steep as twice "
+       "the rate of the outer half of the approach.",
+       fig28},
+      {"fig30",
+       {},
+       "Linear against nonlinear coding",
+       "With every memory the nonlinear curves lie below the linear ones; the area between them is "
+       "energy saved on the traverse.",
+       "As in fig26; energy is drag times way at unit surface and speed.",
+       fig30},
+      {"table2",
+       {},
+       "Performance of memories, in numbers",
+       "In words: large steps without memory; smooth with ten values, the delay large, narrow "
+       "features missed; moderate delay when fading; fine steps and no delay "
+       "with three; gradual rise with the linear coding, steep or progressive with the nonlinear "
+       "one.",
+       "Step: largest change from voxel to voxel. Smoothness: total variation of the slope. Delay: "
+       "how much later effective viscosity rises, in voxels and in "
+       "milliseconds at 1 m/s; up to one voxel counts as none. Hidden: the most that effective "
+       "viscosity is below the voxel's own. Narrow features: peaks of less than ten voxels on "
+       "the tracks y = 0 to 20, missed where less than half of a peak is felt. Rising and distance "
+       "are ours; a field without memory has no delay by "
+       "construction, and its delay is measured against itself.",
+       table2},
   };
   return all;
 }

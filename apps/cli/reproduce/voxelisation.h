@@ -70,10 +70,9 @@ enum class ProbeLines {
 struct ProbeResult {
   std::string part;
   ProbeLines lines = ProbeLines::largest_face;
-  std::uint64_t exact = 0;           ///< voxels that a triangle passes through
-  std::uint64_t missed = 0;          ///< of those, met by no line
-  std::uint64_t doubled = 0;         ///< met more than once
-  std::uint64_t unlike_library = 0;  ///< where BoundaryMethod::probe differs; largest_face only
+  std::uint64_t exact = 0;    ///< voxels that a triangle passes through
+  std::uint64_t missed = 0;   ///< of those, met by no line
+  std::uint64_t doubled = 0;  ///< met more than once
 };
 
 /// @param mesh  in metres, as Workshop::read_back()
