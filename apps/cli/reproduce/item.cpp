@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "reproduce/layers.h"
+#include "reproduce/master.h"
 #include "reproduce/memory.h"
 #include "reproduce/tracks.h"
 #include "reproduce/voxelisation.h"
@@ -16,6 +17,23 @@ namespace vicinity::report {
 
 const std::vector<Item>& items() {
   static const std::vector<Item> all{
+      {"dynamics",
+       {"fig2", "fig3"},
+       "Force field against drag in the hand (section 3.1.1)",
+       "A force field acts whatever the velocity: it oscillates in narrow places, pushes and pulls "
+       "at the edge of its zone (p1, p3 of "
+       "figure 2), and goes on pushing a hand that stands still. Drag takes energy out only, "
+       "vanishes at rest, and lets an object be reached slowly.",
+       "One joint: mass 0.3 kg, own damping 1 N·s/m, read each millisecond, difference of two "
+       "positions, held force, exact integration. The "
+       "operator is a spring of 30 N/m and a damper of 1 N·s/m towards his target. Both methods "
+       "act within 30 mm of a surface. The force "
+       "field is a linear spring with 5 N at the surface and behind it; drag is the field of six "
+       "layers (cube, m "
+       "= 1) scaled so that rank 1 has 0.95 of the device's own "
+       "damping, which is what a passive device bears. The slot is 40 mm wide; the post has a "
+       "radius of 20 mm and is passed 10 mm away.",
+       dynamics},
       {"fig5",
        {},
        "Drag against layer, for a slow and a fast point",
@@ -202,6 +220,17 @@ const std::vector<Item>& items() {
        "are ours; a field without memory has no delay by "
        "construction, and its delay is measured against itself.",
        table2},
+      {"fig34",
+       {"fig33"},
+       "The operator's force, absorbed at several speeds",
+       "On a move along x by the cone, with nonlinear coding, drag absorbs most of the operator's "
+       "force where R is nearest, and more at higher speed; what is left "
+       "moves the master.",
+       "Eq. 10 as M x'' + B x' + lambda (G tau1 + tau2/A)/L = Fh, tau1 = mu_e S v: even speeds of "
+       "0.05, 0.1 and 0.2 m/s, M = 2 kg and B = 1 N·s/m for a light balanced "
+       "arm, all gains one, no contact. The line passes just beside the base, at z = 5; coding 32, "
+       "20, 13, 11, 10, 9.",
+       fig34},
   };
   return all;
 }

@@ -314,9 +314,8 @@ Outcome table2(Workshop& workshop) {
                     "delay [ms]", "hidden at most", "narrow missed", "work [J]", "rise far",
                     "rise near"}};
   CsvTable table(
-      "case,coding,memory,largest_step,slope_variation,delay_vox,delay_ms,hidden,peak_kept,"
-      "contrast_"
-      "kept,work_J,rise_far,rise_near");
+      "case,coding,memory,largest_step,slope_variation,delay_vox,delay_ms,hidden,narrow_met,"
+      "narrow_missed,work_J,rise_far,rise_near");
   for (const Felt& felt : cases) {
     const MemoryPerformance row = performance_of(felt);
     table.row(row.name, row.coding, row.memory, row.largest_step, row.slope_variation,

@@ -74,4 +74,23 @@ Part ball() {
           {128, 128, 128}};
 }
 
+Part slot() {
+  constexpr double width = 12;
+  const Vec3 size(width, 40, 40), aside(slot_half_gap + width / 2, 0, 0);
+  const Vec3 middle = Vec3::Constant(slot_middle);
+  TriangleMesh both = at(middle - aside, primitive::box(size));
+  const TriangleMesh right = at(middle + aside, primitive::box(size));
+  const auto offset = static_cast<std::uint32_t>(both.vertices.size());
+  both.vertices.insert(both.vertices.end(), right.vertices.begin(), right.vertices.end());
+  for (const auto& [a, b, c] : right.triangles) {
+    both.triangles.push_back({a + offset, b + offset, c + offset});
+  }
+  return {"slot", both, {80, 80, 80}};
+}
+
+Part post() {
+  return {
+      "post", at(Vec3::Constant(post_axis), primitive::cylinder(post_radius, 40)), {80, 80, 80}};
+}
+
 }  // namespace vicinity::report

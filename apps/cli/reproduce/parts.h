@@ -45,4 +45,12 @@ Part curved_cylinder();
 Part ball();
 inline constexpr double ball_centre = 64, ball_radius = 10;
 
+/// Two blocks, face to face across a slot along y (§3.1.1).
+Part slot();
+inline constexpr double slot_middle = 40, slot_half_gap = 4;
+
+/// A round post, and how far beside its axis a line passes it (fig. 2).
+Part post();
+inline constexpr double post_axis = 40, post_radius = 4, post_line_offset = 6;
+
 }  // namespace vicinity::report
