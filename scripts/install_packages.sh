@@ -15,6 +15,7 @@ packages=(
   nlohmann-json3-dev libxxhash-dev   # what a field file says of itself, and its checksums
   libcli11-dev                       # command line
   libcairo2-dev fonts-dejavu-core    # pictures
+  libembree-dev                      # the report's measured peer: nearest surface by a tree
   libopenvdb-dev libboost-iostreams-dev # export to .vdb
   libgtest-dev libgmock-dev          # tests
   liburdfdom-dev liborocos-kdl-dev   # tests: robots and kinematics by another route

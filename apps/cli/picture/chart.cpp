@@ -3,6 +3,8 @@
 
 #include "picture/chart.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,8 +39,24 @@ const Canvas::Line& line_of(const ChartPanel& panel, std::size_t series) {
 
 struct Range {
   double lo = 0, hi = 0;
-  double position(double value) const { return (value - lo) / (hi - lo); }
+  bool logarithmic = false;  // lo and hi are then decades
+
+  double position(double value) const {
+    return ((logarithmic ? std::log10(value) : value) - lo) / (hi - lo);
+  }
+  std::vector<Tick> ticks(int wanted) const {
+    if (!logarithmic) return ticks_within(lo, hi, wanted);
+    std::vector<Tick> powers;
+    for (double decade = std::ceil(lo); decade <= hi; ++decade) {
+      powers.push_back({std::pow(10, decade), fmt::format("{:g}", std::pow(10, decade))});
+    }
+    return powers;
+  }
 };
+
+Range decades(const Range& values) {
+  return {std::floor(std::log10(values.lo)), std::ceil(std::log10(values.hi)), true};
+}
 
 Range x_range(const Chart& chart) {
   Range range{INFINITY, -INFINITY};
@@ -49,17 +67,20 @@ Range x_range(const Chart& chart) {
       range.hi = std::max(range.hi, series.points.back().first);
     }
   }
-  return range.hi > range.lo ? range : Range{range.hi < INFINITY ? range.hi : 0, range.lo + 1};
+  if (!(range.hi > range.lo)) range = {range.hi < INFINITY ? range.hi : 0, range.lo + 1};
+  return chart.logarithmic_x ? decades(range) : range;
 }
 
 Range y_range(const ChartPanel& panel) {
   Range range;
+  if (panel.logarithmic) range = {INFINITY, -INFINITY};
   for (const Series& series : panel.series) {
     for (const auto& [x, y] : series.points) {
       range.lo = std::min(range.lo, y);
       range.hi = std::max(range.hi, y);
     }
   }
+  if (panel.logarithmic) return decades(range);
   const double room = 0.08 * (range.hi > range.lo ? range.hi - range.lo : 12.5);
   return {range.lo < 0 ? range.lo - room : 0, range.hi + room};
 }
@@ -157,7 +178,7 @@ void draw_panel(Canvas& canvas, const ChartPanel& panel, const Range& along, dou
   const Range range = y_range(panel);
   const auto to_x = [&](double value) { return left + width * along.position(value); };
   const auto to_y = [&](double value) { return y + panel_height * (1 - range.position(value)); };
-  for (const Tick& tick : ticks_within(along.lo, along.hi, 8)) {
+  for (const Tick& tick : along.ticks(8)) {
     const double x = to_x(tick.value);
     canvas.polyline({{x, y}, {x, y + panel_height}}, {grid, 0.7});
     if (lowest) {
@@ -165,7 +186,7 @@ void draw_panel(Canvas& canvas, const ChartPanel& panel, const Range& along, dou
       canvas.text(x, y + panel_height + 16, tick.label, text_size, Canvas::Anchor::middle);
     }
   }
-  for (const Tick& tick : ticks_within(range.lo, range.hi, 5)) {
+  for (const Tick& tick : range.ticks(5)) {
     const double at = to_y(tick.value);
     canvas.polyline({{left, at}, {left + width, at}}, {grid, 0.7});
     canvas.polyline({{left - 4, at}, {left, at}}, {frame, 0.8});

@@ -22,6 +22,7 @@ struct Series {
 struct ChartPanel {
   std::string y_label;  ///< quantity and unit, as "drag |F| [N]"
   std::vector<Series> series;
+  bool logarithmic = false;  ///< the vertical axis; values are then above zero
 };
 
 /// A stretch of the horizontal axis in a colour of its own.
@@ -35,12 +36,13 @@ struct Chart {
   std::string x_label;
   std::vector<ChartPanel> panels;
   std::vector<ChartBand>
-      bands;  ///< drawn as a strip along the top of the first panel; may be empty
+      bands;                   ///< drawn as a strip along the top of the first panel; may be empty
+  bool logarithmic_x = false;  ///< the horizontal axis; values are then above zero
 };
 
 /// Draws the chart to a .png or .svg file. Series differ in colour, lightness and dashes, so that
 /// they can be told apart by a colour-blind person and in grey print. Vertical axes start at zero
-/// where nothing is below.
+/// where nothing is below, unless they are logarithmic.
 /// Errors: throws Error for another extension and where the file cannot be written.
 void draw_chart(const Chart& chart, const std::filesystem::path& path);
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "vicinity/mesh/placement.h"
@@ -91,6 +92,13 @@ Part slot() {
 Part post() {
   return {
       "post", at(Vec3::Constant(post_axis), primitive::cylinder(post_radius, 40)), {80, 80, 80}};
+}
+
+Part faceted_sphere(int segments) {
+  return {
+      "sphere_" + std::to_string(segments),
+      at(Vec3::Constant(faceted_sphere_centre), primitive::sphere(faceted_sphere_radius, segments)),
+      {128, 128, 128}};
 }
 
 }  // namespace vicinity::report

@@ -53,4 +53,8 @@ inline constexpr double slot_middle = 40, slot_half_gap = 4;
 Part post();
 inline constexpr double post_axis = 40, post_radius = 4, post_line_offset = 6;
 
+/// Radius 24, of segments * (segments - 2) triangles.
+Part faceted_sphere(int segments);
+inline constexpr double faceted_sphere_centre = 64, faceted_sphere_radius = 24;
+
 }  // namespace vicinity::report
