@@ -25,6 +25,8 @@ p { margin: .25rem 0 1rem; max-width: 46rem; }
 .lead { font-size: 1.1rem; color: #454d55; }
 figure { margin: 2rem 0; break-inside: avoid; }
 figure img { display: block; max-width: 100%; max-height: 44rem; border: 1px solid #d5dade; }
+.two { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 0 1.5rem; }
+.two figure { margin: 1rem 0 .5rem; }
 figcaption { margin-top: .6rem; max-width: 46rem; }
 pre { font: 14px/1.5 "DejaVu Sans Mono", Menlo, Consolas, monospace; background: #f3f5f6;
       padding: .6rem .8rem; margin: .6rem 0 0; white-space: pre-wrap; overflow-wrap: anywhere; }
@@ -143,7 +145,9 @@ std::string section(const PageSection& section) {
   std::string html = "<h2>" + escaped(section.title) + "</h2>\n";
   if (!section.says.empty()) html += "<p>" + escaped(section.says) + "</p>\n";
   if (!section.notes.empty()) html += notes(section.notes);
+  if (section.two_to_a_row) html += "<div class=\"two\">\n";
   for (const PagePicture& picture : section.pictures) html += figure(picture);
+  if (section.two_to_a_row) html += "</div>\n";
   if (!section.table.empty()) html += table(section.table);
   if (!section.commands.empty()) {
     html += "<pre>";

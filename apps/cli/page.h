@@ -28,6 +28,7 @@ struct PageSection {
   std::string says;
   std::vector<PageNote> notes = {};
   std::vector<PagePicture> pictures = {};
+  bool two_to_a_row = false;                         ///< pictures
   std::vector<std::vector<std::string>> table = {};  ///< first row: headings; empty: no table
   std::vector<std::string> commands = {};            ///< to type, in order
   std::vector<std::string> links = {};               ///< files beside the page, relative to it

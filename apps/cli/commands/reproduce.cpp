@@ -53,6 +53,7 @@ PageSection section_of(const Result& result, const std::filesystem::path& folder
   for (const report::Figure& figure : result.outcome.figures) {
     section.pictures.push_back({figure.file, figure.title, figure.says});
   }
+  section.two_to_a_row = result.outcome.figures.size() > 1;
   section.table = result.outcome.table;
   section.commands = {"vicinity reproduce --only " + result.item->name + " -o DIR"};
   for (const std::filesystem::path& file : result.outcome.data) {
@@ -72,7 +73,7 @@ Page page_of(const std::vector<Result>& results, const std::filesystem::path& fo
     agree += result.verdict.agrees ? 1 : 0;
     overview.notes.push_back(
         {result.item->name + (result.verdict.agrees ? " agrees" : " does not agree"),
-         result.item->title + ". " + result.verdict.why,
+         result.item->title + (result.verdict.agrees ? "" : ": " + result.verdict.why),
          result.verdict.agrees ? PageNote::Tone::good : PageNote::Tone::bad});
   }
   Page page{

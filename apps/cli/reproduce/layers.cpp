@@ -70,13 +70,11 @@ struct Gallery {
   }
 };
 
+// From least to most reach of a rank, in the order of the table.
 std::string spreads(const std::vector<Wrapping>& wrappings, std::size_t rank) {
-  std::string text;
-  for (const Wrapping& w : wrappings) {
-    text += fmt::format("{}{} {} {:.1f}", text.empty() ? "" : ", ", w.part, name_of(w.shape, w.m),
-                        w.reaches.at(rank - 1).spread());
-  }
-  return text;
+  std::vector<double> values;
+  for (const Wrapping& w : wrappings) values.push_back(w.reaches.at(rank - 1).spread());
+  return listed(values, "{:.1f}");
 }
 
 }  // namespace
@@ -144,21 +142,20 @@ Outcome fig16(Workshop& workshop) {
 
 std::vector<Check> check_fig17(const std::vector<Wrapping>& cubes) {
   bool wider = true, distorted = true;
-  std::string zones;
+  std::vector<double> zones;
   for (std::size_t n = 0; n < cubes.size(); ++n) {
     const LayerReach &first = cubes[n].reaches.front(), &last = cubes[n].reaches.back();
     if (n > 0 && cubes[n].part == cubes[n - 1].part) {
       wider &= last.mean > cubes[n - 1].reaches.back().mean;
     }
     distorted &= last.spread() > 2 * first.spread() && last.most > 1.3 * last.least;
-    zones += fmt::format("{}{} FAZ {}: {:.1f}", zones.empty() ? "" : ", ", cubes[n].part,
-                         2 * cubes[n].m + 1, last.mean);
+    zones.push_back(last.mean);
   }
   return {{"a bigger FAZ covers a wider zone in as many layers",
-           "mean reach of rank 6: " + zones + " voxels", wider},
+           "mean reach of rank 6, as in the table: " + listed(zones, "{:.1f}") + " voxels", wider},
           {"outer layers lose the shape of the object",
-           "least to most reach of rank 1: " + spreads(cubes, 1) +
-               "; of rank 6: " + spreads(cubes, ranks) + " voxels",
+           "from least to most reach of rank 1 " + spreads(cubes, 1) + ", of rank 6 " +
+               spreads(cubes, ranks) + " voxels",
            distorted}};
 }
 
@@ -196,18 +193,20 @@ std::vector<Check> check_fig18(const std::vector<Wrapping>& pairs,
                           100 * left_of(concavities[n]));
   }
   const bool any = !concavities.empty();
-  return {{"in the first layer the difference is not appreciable",
-           "mean reach differs by " + first_layers + " voxels", same_first},
-          {"at higher rank the sphere is truer to the shape",
-           "least to most reach of rank 6: " + spreads(pairs, ranks) + " voxels", better_last},
-          {"the narrow concavity A fills up",
-           any ? fmt::format(
-                     "{:.0f} wide, {:.0f} deep; the third layer still shows {:.0f} % of its depth",
-                     concavities[0].mouth, concavities[0].depth, 100 * left_of(concavities[0]))
-               : "no concavity found",
-           any && left_of(concavities[0]) < 0.25},
-          {"the wider concavities B to E stay open",
-           "the third layer still shows of their depth: " + shares, others_open}};
+  return {
+      {"in the first layer the difference is not appreciable",
+       "mean reach differs by " + first_layers + " voxels", same_first},
+      {"at higher rank the sphere is truer to the shape",
+       "from least to most reach of rank 6, as in the table: " + spreads(pairs, ranks) + " voxels",
+       better_last},
+      {"the narrow concavity A fills up",
+       any ? fmt::format(
+                 "{:.0f} wide, {:.0f} deep; the third layer still shows {:.0f} % of its depth",
+                 concavities[0].mouth, concavities[0].depth, 100 * left_of(concavities[0]))
+           : "no concavity found",
+       any && left_of(concavities[0]) < 0.25},
+      {"the wider concavities B to E stay open",
+       "the third layer still shows of their depth: " + shares, others_open}};
 }
 
 Outcome fig18(Workshop& workshop) {
@@ -240,7 +239,7 @@ std::vector<Check> check_fig19(const std::vector<Wrapping>& spheres, std::uint64
   for (const Wrapping& w : spheres)
     even &= w.reaches.back().spread() < 0.25 * w.reaches.back().mean;
   return {{"six layers of m = 3 and 4 keep the shape",
-           "least to most reach of rank 6: " + spreads(spheres, ranks) +
+           "from least to most reach of rank 6, as in the table: " + spreads(spheres, ranks) +
                " voxels, which should be less than a quarter of the reach",
            even},
           {"above the top there are only neighbours, of the body below",
@@ -273,119 +272,6 @@ Outcome fig19(Workshop& workshop) {
   }
   gallery.write_reaches();
   return gallery.finished(check_fig19(gallery.wrappings, body, ranked));
-}
-
-// -------------------------------------------------------------------------------------- fig. 20-21
-
-std::vector<Check> check_fig20(const std::vector<ConeSection>& sections) {
-  bool shrink = true, round = true, thicker = true;
-  std::string radii;
-  double worst = 0;
-  for (std::size_t n = 0; n < sections.size(); ++n) {
-    const auto [least, most] = std::ranges::minmax(sections[n].radii);
-    const auto mean = [&](const ConeSection& s) {
-      double sum = 0;
-      for (const double r : s.radii) sum += r;
-      return sum / static_cast<double>(s.radii.size());
-    };
-    // The paper shows horizontal sections of m = 2 and 4.
-    if (sections[n].m % 2 == 0) {
-      worst = std::max(worst, (most - least) / mean(sections[n]));
-      round &= most - least < 0.15 * mean(sections[n]);
-    }
-    if (n > 0 && sections[n].m == sections[n - 1].m) {
-      shrink &= mean(sections[n]) < mean(sections[n - 1]);
-    }
-    for (const ConeSection& other : sections) {
-      if (other.z == sections[n].z && other.m > sections[n].m) {
-        thicker &= mean(other) > mean(sections[n]) + other.m - sections[n].m;
-      }
-    }
-    radii += fmt::format("{}m = {}, z = {}: {:.1f}", n == 0 ? "" : "; ", sections[n].m,
-                         sections[n].z, mean(sections[n]));
-  }
-  return {
-      {"sections shrink towards the apex", "mean radius of rank 6, " + radii + " voxels", shrink},
-      {"a larger sphere covers a wider zone", "as above", thicker},
-      {"layers stay round",
-       fmt::format("the radius of a section of m = 2 or 4 varies by {:.0f} % at most", 100 * worst),
-       round}};
-}
-
-Outcome fig20(Workshop& workshop) {
-  const Part part = cone();
-  const ViscosityField distances = workshop.distances(part, 32);
-  Outcome outcome;
-  std::vector<ConeSection> sections;
-  std::vector<RankFit> fits;
-  CsvTable table("m,z,degree,radius_vox");
-  for (const int m : {1, 2, 3, 4}) {
-    const ViscosityField field = workshop.field(part, {.m = m, .q = ranks});
-    fits.push_back(rank_fit(name_of(LayerShape::sphere, m), field, distances, m));
-    outcome.figures.push_back(section(workshop, fmt::format("fig20/vertical_m{}.png", m), field, 1,
-                                      static_cast<int>(cone_axis),
-                                      fmt::format("Through the apex, sphere m = {}", m), ""));
-    for (const int z : {20, 27, 33, 40}) {
-      sections.push_back({m, z, contour(field, cone_axis, cone_axis, z, ranks)});
-      for (std::size_t degree = 0; degree < sections.back().radii.size(); ++degree) {
-        table.row(m, z, degree, sections.back().radii[degree]);
-      }
-      if (m != 2 && m != 4) continue;
-      outcome.figures.push_back(
-          section(workshop, fmt::format("fig20/horizontal_m{}_z{}.png", m, z), field, 2, z,
-                  fmt::format("Horizontal, sphere m = {}, z = {}", m, z), ""));
-    }
-  }
-  outcome.checks = check_fig20(sections);
-  outcome.checks.push_back(ranks_follow_distance(fits));
-  outcome.data = {workshop.file("fig20/contours_of_rank_6.csv")};
-  table.write(outcome.data.front());
-  return outcome;
-}
-
-std::vector<Check> check_fig21(const std::vector<std::uint64_t>& by_rank, std::uint64_t unequal) {
-  std::uint64_t all = 0;
-  for (const std::uint64_t count : by_rank) all += count;
-  return {{"seven layers form around the wedge, and none is empty",
-           fmt::format("{} voxels of rank 1 to {}", fmt::join(by_rank, ", "), by_rank.size()),
-           by_rank.size() == 7 && std::ranges::none_of(by_rank, [](auto n) { return n == 0; })},
-          {"both flanks of the V are wrapped alike",
-           fmt::format("{} of {} voxels differ from their mirror image", unequal, all),
-           100 * unequal < all}};
-}
-
-Outcome fig21(Workshop& workshop) {
-  const Part part = wedge();
-  constexpr int q = 7, m = 3;
-  const ViscosityField field =
-      workshop.field(part, {.m = m, .q = q, .coding = named_coding("linear", q)});
-  std::uint64_t unequal = 0;
-  const VoxelIndex& dims = field.workspace().dims;
-  for (std::int32_t k = 0; k < dims.k; ++k) {
-    for (std::int32_t j = 0; j < dims.j; ++j) {
-      for (std::int32_t i = 0; i <= wedge_mirror; ++i) {
-        unequal += field.code_at({i, j, k}) != field.code_at({wedge_mirror - i, j, k}) ? 1 : 0;
-      }
-    }
-  }
-  Outcome outcome{.checks = check_fig21(field.objects().front().ranks, unequal), .figures = {}};
-  outcome.checks.push_back(
-      ranks_follow_distance({rank_fit("the wedge", field, workshop.distances(part, 28), m)}));
-  constexpr int above_junction = 60;
-  outcome.figures = {
-      section(workshop, "fig21/seen_from_x.png", field, 0, 64, "As seen from x",
-              "Through the bottom of the V: the block is as high as its junction here."),
-      section(workshop, "fig21/seen_from_z.png", field, 2, above_junction,
-              fmt::format("As seen along z, z = {}", above_junction),
-              "Above the junction of the V: two flanks, and layers between them."),
-      section(workshop, "fig21/seen_from_y.png", field, 1, 64, "As seen from y",
-              "The V narrows downwards, and its layers with it.")};
-  CsvTable table("rank,voxels");
-  const std::vector<std::uint64_t>& counts = field.objects().front().ranks;
-  for (std::size_t n = 0; n < counts.size(); ++n) table.row(n + 1, counts[n]);
-  outcome.data = {workshop.file("fig21/ranks.csv")};
-  table.write(outcome.data.front());
-  return outcome;
 }
 
 }  // namespace vicinity::report

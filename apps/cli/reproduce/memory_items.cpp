@@ -50,7 +50,9 @@ std::filesystem::path write_cases(const Workshop& workshop, const std::string& f
 }
 
 cli::Series series_of(const Felt& felt) {
-  cli::Series series{.name = felt.name + " " + felt.memory, .points = {}, .steps = true};
+  const bool of_paper = felt.name.starts_with('I');
+  cli::Series series{
+      .name = of_paper ? felt.name + ", " + felt.memory : felt.name, .points = {}, .steps = true};
   for (std::size_t n = 0; n < felt.mu_e.size(); ++n) {
     series.points.emplace_back(static_cast<double>(n), felt.mu_e[n]);
   }

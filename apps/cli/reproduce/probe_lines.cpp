@@ -170,8 +170,8 @@ Outcome fig11(Workshop& workshop) {
                 static_cast<int>(cone_axis),
                 exact ? "The cone's skin, exact" : "The cone's skin, by probe vectors",
                 exact ? "Every voxel that a triangle passes through."
-                      : "Only voxels that a chosen grid line meets: thinner, with neighbours "
-                        "across edges only.",
+                      : "Only voxels that a chosen grid line meets. The triangles are long and "
+                        "narrow, and most of their voxels lie between two lines.",
                 Box(Vec3(30, 30, 0), Vec3(90, 90, 50))));
   }
   return outcome;

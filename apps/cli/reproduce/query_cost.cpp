@@ -163,8 +163,7 @@ Outcome fig7(Workshop& workshop) {
       chart(workshop, "fig7/cost_per_query.svg", cost_chart, "Cost of one query",
             "Points within 16 voxels of a sphere, which is made of ever more triangles. "
             "All three in one run, on one thread of this machine.")};
-  outcome.data = {workshop.file("fig7/queries.csv"),
-                  workshop.file("fig7/cost_timing.json")};
+  outcome.data = {workshop.file("fig7/queries.csv"), workshop.file("fig7/cost_timing.json")};
   table.write(outcome.data.front());
   write_timing(costs, outcome.data.back());
   return outcome;
