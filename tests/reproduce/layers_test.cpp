@@ -105,6 +105,8 @@ std::vector<LayerReach> reaches(double least, double most) {
 TEST(Fig17To19, TurnWhereTheMaskIsIgnored) {
   const Wrapping cube{"part", LayerShape::cube, 2, reaches(12, 20)};
   const Wrapping sphere{"part", LayerShape::sphere, 2, reaches(11, 12)};
+  const Wrapping large{"part", LayerShape::sphere, 3, reaches(17.5, 18)};
+  const Wrapping large_cube{"part", LayerShape::cube, 3, reaches(18, 30)};
   const std::vector<Concavity> concavities{{.mouth = 7, .depth = 10, .dip_by_rank = {10, 6, 3, 1}},
                                            {.mouth = 20, .depth = 8, .dip_by_rank = {8, 8, 8, 7}}};
   EXPECT_TRUE(agrees(check_fig17({cube})));
@@ -112,9 +114,9 @@ TEST(Fig17To19, TurnWhereTheMaskIsIgnored) {
   EXPECT_TRUE(agrees(check_fig18({cube, sphere}, concavities)));
   EXPECT_FALSE(agrees(check_fig18({cube, cube}, concavities)));
   EXPECT_FALSE(agrees(check_fig18({cube, sphere}, {concavities[1], concavities[1]})));
-  EXPECT_TRUE(agrees(check_fig19({sphere}, 0, 10)));
-  EXPECT_FALSE(agrees(check_fig19({cube}, 0, 10)));
-  EXPECT_FALSE(agrees(check_fig19({sphere}, 1, 10)));
+  EXPECT_TRUE(agrees(check_fig19({sphere, large}, 0, 10)));
+  EXPECT_FALSE(agrees(check_fig19({cube, large_cube}, 0, 10)));
+  EXPECT_FALSE(agrees(check_fig19({sphere, large}, 1, 10)));
 }
 
 TEST(Fig16, TurnsForANeighbourTooFewOrTooMany) {
