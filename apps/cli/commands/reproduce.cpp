@@ -80,12 +80,11 @@ Page page_of(const std::vector<Result>& results, const std::filesystem::path& fo
       .title = "The paper, reproduced",
       .says = fmt::format(
           "Physics-based vicinity emulation for enhanced perception in tele-operation (Pramana – "
-          "J. Phys. 85, 6, December 2015): {} figures, tables and claims, made anew by this "
-          "program from its own objects. {} agree, {} do not. A voxel is {:g} mm; every object "
-          "went through an "
-          "STL file in meshes/ and the ordinary build. Figures 1, 3, 10, 15, 25 and 31 to 33 are "
-          "drawings without a result.",
-          results.size(), agree, results.size() - agree, 1000 * report::voxel_m)};
+          "J. Phys. 85, 6, December 2015): its figures, tables and claims, made anew by this "
+          "program from its own objects. {} of {} items agree with the paper. A voxel is {:g} mm; "
+          "every object went through an STL file in meshes/ and the ordinary build. Figures 1, 3, "
+          "10, 15, 25 and 31 to 33 are drawings without a result.",
+          agree, results.size(), 1000 * report::voxel_m)};
   page.sections.push_back(std::move(overview));
   for (const Result& result : results) page.sections.push_back(section_of(result, folder));
   return page;

@@ -160,7 +160,7 @@ std::vector<Check> check_fig28(const std::vector<Felt>& cases) {
   }
   const MemoryPerformance linear = performance(cases, "IVa"), nonlinear = performance(cases, "IVb");
   checks.push_back(
-      {"the linear coding rises at a constant rate",
+      {"the linear coding rises at a constant rate, as read here",
        fmt::format("{:.2f} N·s/m³ a voxel in the outer half of the approach, {:.2f} in the inner",
                    linear.rise_far, linear.rise_near),
        linear.rise_near > linear.rise_far / 2 && linear.rise_near < linear.rise_far * 2});
