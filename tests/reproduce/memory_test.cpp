@@ -57,6 +57,19 @@ TEST_F(Memory, AFilterThatDividesByKPlusOneTurnsEveryVerdict) {
   for (const Named& item : items) EXPECT_FALSE(agrees(item.check(broken))) << item.name;
 }
 
+TEST_F(Memory, RanksThatAreOffByOneTurnEveryVerdict) {
+  const BenchRoom room;
+  for (const double layer : {-4.0, 4.0}) {
+    Part moved = complex_cylinder();
+    for (Vec3& p : moved.mesh.vertices) p.y() += layer;
+    const Layers layers{.m = 4, .q = 10, .coding = named_coding("linear", 10)};
+    const std::vector<Felt> off = feel_all_cases(room.workshop().field(moved, layers), continuous_);
+    for (const Named& item : items) {
+      EXPECT_FALSE(agrees(item.check(off))) << item.name << ", " << layer << " voxels";
+    }
+  }
+}
+
 TEST_F(Memory, AFilterThatSmoothsNothingTurnsTheVerdictsOnSmoothing) {
   std::vector<Felt> broken = cases_;
   for (Felt& felt : broken) felt.mu_e = felt.mu;
@@ -65,12 +78,13 @@ TEST_F(Memory, AFilterThatSmoothsNothingTurnsTheVerdictsOnSmoothing) {
   }
 }
 
-TEST_F(Memory, SwappedCodingsTurnTheVerdictOnEnergy) {
+TEST_F(Memory, SwappedCodingsTurnTheVerdictsOnRiseAndEnergy) {
   std::vector<Felt> broken = cases_;
   for (std::size_t n = 0; n < 4; ++n) {
     std::swap(broken[n].mu, broken[n + 4].mu);
     std::swap(broken[n].mu_e, broken[n + 4].mu_e);
   }
+  EXPECT_FALSE(agrees(check_fig28(broken)));
   EXPECT_FALSE(agrees(check_fig30(broken)));
   EXPECT_FALSE(agrees(check_table2(broken)));
 }

@@ -201,9 +201,9 @@ const std::vector<Item>& items() {
        "Three values of equal weight (IVa, IVb) turn each step into fine ones, very close to the "
        "original, like rubbing on comb teeth; the linear coding rises at a constant rate, the "
        "nonlinear one steeply near the object.",
-       "As in fig26. Very close is read as less than 3 % of the peak in the mean. Rates are per "
-       "voxel of way, and the track passes the object sideways: constant is read as within a "
-       "factor of two between the outer and the inner half of the approach, steep as twice.",
+       "As in fig26. Very close is read as less than 3 % of the peak in the mean. The rate of rise "
+       "is "
+       "what each layer adds: by way it depends on how the track passes the object.",
        fig28},
       {"fig30",
        {},

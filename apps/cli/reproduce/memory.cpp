@@ -147,4 +147,15 @@ MemoryPerformance performance_of(const Felt& felt) {
   return row;
 }
 
+std::vector<double> rises_by_layer(const Felt& felt) {
+  const auto peak = std::ranges::max_element(felt.mu);
+  std::vector<double> rises;
+  double before = 0;
+  for (auto mu = felt.mu.begin(); mu <= peak && mu != felt.mu.end(); ++mu) {
+    if (*mu != before && before > 0) rises.push_back(*mu - before);
+    before = *mu;
+  }
+  return rises;
+}
+
 }  // namespace vicinity::report

@@ -47,9 +47,16 @@ struct MemoryPerformance {
 
 MemoryPerformance performance_of(const Felt& felt);
 
+/// How much viscosity each layer adds to that before it, on the approach to the highest; without
+/// the step into the first.
+std::vector<double> rises_by_layer(const Felt& felt);
+
 /// mu_e is a weighted mean of exactly the remembered values: where these are all alike it is their
 /// value, and a whole pass from empty space to empty space keeps the work.
 Check memory_is_a_mean(const std::vector<Felt>& cases);
+
+/// The track comes into the first layer and no farther: every coding has its first value there.
+Check track_meets_first_layer(const std::vector<Felt>& cases);
 
 std::vector<Check> check_fig26(const std::vector<Felt>& cases);
 Outcome fig26(Workshop& workshop);

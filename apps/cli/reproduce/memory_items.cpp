@@ -96,6 +96,19 @@ Check memory_is_a_mean(const std::vector<Felt>& cases) {
           !cases.empty() && lost < 1e-9 && outside < 1e-9};
 }
 
+Check track_meets_first_layer(const std::vector<Felt>& cases) {
+  const double first = named_coding("linear", 1).of_rank(1);  // of both codings
+  std::size_t others = 0;
+  for (const Felt& felt : cases) {
+    // Interpolated viscosity nears the value of a layer's near side.
+    const bool stepped = !felt.name.starts_with("distance");
+    others += stepped && std::ranges::max(felt.mu) != first ? 1 : 0;
+  }
+  return {"the track comes into the first layer without touching",
+          fmt::format("{:g} N·s/m³ at most, {} cases differ", first, others),
+          !cases.empty() && others == 0};
+}
+
 // ------------------------------------------------------------------------------------ fig. 26, 27
 
 std::vector<Check> check_fig26(const std::vector<Felt>& cases) {
@@ -120,6 +133,7 @@ std::vector<Check> check_fig26(const std::vector<Felt>& cases) {
          two.delay_vox > three.delay_vox && three.delay_vox > 0});
   }
   checks.push_back(memory_is_a_mean(cases));
+  checks.push_back(track_meets_first_layer(cases));
   return checks;
 }
 
@@ -158,17 +172,17 @@ std::vector<Check> check_fig28(const std::vector<Felt>& cases) {
                      mean_off, std::ranges::max(fine.mu), row.delay_vox),
          mean_off < 0.03 * std::ranges::max(fine.mu) && row.delay_vox < 1.05});
   }
-  const MemoryPerformance linear = performance(cases, "IVa"), nonlinear = performance(cases, "IVb");
-  checks.push_back(
-      {"the linear coding rises at a constant rate, as read here",
-       fmt::format("{:.2f} N·s/m³ a voxel in the outer half of the approach, {:.2f} in the inner",
-                   linear.rise_far, linear.rise_near),
-       linear.rise_near > linear.rise_far / 2 && linear.rise_near < linear.rise_far * 2});
+  const std::vector<double> linear = rises_by_layer(named(cases, "IVa"));
+  const std::vector<double> nonlinear = rises_by_layer(named(cases, "IVb"));
+  checks.push_back({"the linear coding rises at a constant rate",
+                    fmt::format("each layer adds {} N·s/m³ to that before", listed(linear)),
+                    linear.size() > 1 && std::ranges::max(linear) == std::ranges::min(linear)});
   checks.push_back({"the nonlinear coding rises steeply near the object",
-                    fmt::format("{:.2f} in the outer half, {:.2f} in the inner", nonlinear.rise_far,
-                                nonlinear.rise_near),
-                    nonlinear.rise_near > 2 * nonlinear.rise_far});
+                    fmt::format("each layer adds {} N·s/m³, the nearest last", listed(nonlinear)),
+                    nonlinear.size() > 1 && std::ranges::is_sorted(nonlinear) &&
+                        nonlinear.back() > 3 * nonlinear.front()});
   checks.push_back(memory_is_a_mean(cases));
+  checks.push_back(track_meets_first_layer(cases));
   return checks;
 }
 
@@ -207,7 +221,8 @@ std::vector<Check> check_fig30(const std::vector<Felt>& cases) {
            fmt::format("{:.1f} times as fast, the linear coding {:.1f} times",
                        b.rise_near / b.rise_far, a.rise_near / a.rise_far),
            b.rise_near / b.rise_far > 2 * a.rise_near / a.rise_far},
-          memory_is_a_mean(cases)};
+          memory_is_a_mean(cases),
+          track_meets_first_layer(cases)};
 }
 
 Outcome fig30(Workshop& workshop) {
@@ -304,6 +319,7 @@ std::vector<Check> check_table2(const std::vector<Felt>& cases) {
                                 ratio("Ib"), ratio("IIIb"), ratio("IVb")),
                     std::min({ratio("Ib"), ratio("IIIb"), ratio("IVb")}) > 1.5});
   checks.push_back(memory_is_a_mean(cases));
+  checks.push_back(track_meets_first_layer(cases));
   checks.insert(checks.end(), ours.begin(), ours.end());
   return checks;
 }
