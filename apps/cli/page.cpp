@@ -40,6 +40,7 @@ dd { margin: 0; }
 dt.good, dt.bad { font-weight: bold; color: #0b6b43; }
 dt.bad { color: #b03a00; }
 .links { font-size: .88rem; }
+@media screen { table { display: block; overflow-x: auto; } }
 @media print {
   body { font-size: 10.5pt; max-width: none; padding: 0; }
   pre { font-size: 8.5pt; border: 1px solid #d5dade; }

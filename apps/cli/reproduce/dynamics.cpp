@@ -149,6 +149,12 @@ bool settles(const JointRun& run) {
   return !run.contact && run.ripple < still;
 }
 
+double strongest(const JointRun& run) {
+  double most = 0;
+  for (const JointInstant& instant : run.instants) most = std::max(most, std::abs(instant.force));
+  return most;
+}
+
 std::string ending(const JointRun& run) {
   return run.contact ? fmt::format("strikes the object after {:.2f} s", run.instants.back().t)
                      : fmt::format("{:.2g} mm peak to peak after 3 s", 1000 * run.ripple);
@@ -212,7 +218,11 @@ std::vector<Check> check_dynamics(const DynamicsRuns& runs) {
            speed_at_end(runs.lean.drag) < speed_at_end(runs.lean.alone)},
       {fmt::format("where drag loses, 2: {} ms late and {:g} times what the mass bears, it buzzes",
                    delay_periods, beyond_mass_limit),
-       ending(runs.too_much_drag), !settles(runs.too_much_drag)}};
+       ending(runs.too_much_drag), !settles(runs.too_much_drag)},
+      {"where drag loses, 3: as strong as a passive device bears it, it is the weaker cue",
+       fmt::format("{:.2f} N at most past the edge at 0.1 m/s, the force field {:.2f} N",
+                   strongest(runs.edge.drag), strongest(runs.edge.field)),
+       strongest(runs.edge.drag) > 0 && strongest(runs.edge.drag) < strongest(runs.edge.field)}};
 }
 
 Outcome dynamics(Workshop& workshop) {
