@@ -78,7 +78,7 @@ void plot(const TraceOptions& options, const ViscosityField& field,
                   options.direction == "all" ? "all motion" : "closing motion", options.traversal),
               .x_label = "distance along the track [m]",
               .panels = {{"viscosity [N·s/m³]", {mu, mu_e}}, {"drag [N]", {force}}},
-              .bands = bands_along(field, samples, options.speed)},
+              .strips = {{"", bands_along(field, samples, options.speed), {}}}},
              options.plot);
 }
 
