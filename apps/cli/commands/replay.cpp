@@ -6,17 +6,21 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "drag_words.h"
 #include "interruption.h"
 #include "progress_bar.h"
 #include "replay/arm.h"
+#include "replay/arm_check.h"
 #include "replay/joint_log.h"
 #include "replay/joint_trajectory.h"
 #include "replay/loop.h"
 #include "replay/recording.h"
 #include "replay/recording_file.h"
+#include "replay/replay_plot.h"
 #include "replay/statistics.h"
 #include "replay/summary.h"
 #include "vicinity/geometry/error.h"
@@ -52,20 +56,17 @@ double length_of(const ReplayOptions& options, const JointTrajectory& trajectory
   return *options.duration;
 }
 
-}  // namespace
+void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
 
-int replay(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
-  const ViscosityField field = recoded(open_field(options.field), options.coding);
-  Arm arm = read_arm(options.arm);
-  JointLog log = read_joint_log(options.trajectory, arm.robot, column_map_from(options.columns));
-  arm.remarks.insert(arm.remarks.end(), log.remarks.begin(), log.remarks.end());
-  const JointTrajectory trajectory(std::move(log));
-  const Pace pace{
-      .rate = 1 / arm.teleoperation.period_s,
-      .ticks = tick_count(length_of(options, trajectory), 1 / arm.teleoperation.period_s),
-      .real_time = options.real_time};
-
-  const WhileWriting to_the_end;
+int run(const ReplayOptions& options, const ViscosityField& field, const Arm& arm,
+        const JointTrajectory& trajectory, std::ostream& out, std::ostream& err) {
+  const double rate = 1 / arm.teleoperation.period_s;
+  const Pace pace{.rate = rate,
+                  .ticks = tick_count(length_of(options, trajectory), rate),
+                  .real_time = options.real_time};
+  const WhileWriting to_the_end;  // a signal ends the loop; what there is by then is written
   Recording recording(pace.ticks, arm.robot.coordinates.size());
   Teleoperation teleoperation(arm.robot, arm.points, field, arm.teleoperation);
   LoopReport loop;
@@ -73,6 +74,7 @@ int replay(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
     ProgressBar progress(err);
     loop = run_loop(teleoperation, trajectory, arm.X_WB, pace, recording, progress);
   }
+  if (recording.ticks().empty()) return 0;  // interrupted before the first tick
   const ReplayOutcome outcome{.field = field,
                               .arm = arm,
                               .points = arm.points.count(),
@@ -84,6 +86,9 @@ int replay(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
   if (!options.output.empty()) {
     write_recording(recording, arm.robot, field, outcome.t_start, options.output);
   }
+  if (!options.plot.empty()) {
+    plot_replay(outcome, options.field, options.trajectory, options.plot);
+  }
   if (options.json) {
     out << replay_as_json(outcome).dump(2) << '\n';
   } else {
@@ -91,6 +96,29 @@ int replay(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
   }
   out.flush();
   return 0;
+}
+
+}  // namespace
+
+int replay(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
+  const ColumnMap columns = column_map_from(options.columns);
+  if (options.trajectory.empty() && !options.check_only) {
+    throw Error({.what = "no joint log is given", .hint = "--trajectory CSV, or --check-only"});
+  }
+  const ViscosityField field = recoded(open_field(options.field), options.coding);
+  Arm arm = read_arm(options.arm);
+  std::optional<JointLog> log;
+  if (!options.trajectory.empty()) {
+    log = read_joint_log(options.trajectory, arm.robot, columns);
+    append(arm.remarks, log->remarks);
+  }
+  append(arm.remarks, oddities_of_place(field, arm, log));
+  if (options.check_only) {
+    out << (options.json ? check_as_json(field, arm, log).dump(2) + '\n'
+                         : check_in_words(field, arm, log));
+    return 0;
+  }
+  return run(options, field, arm, JointTrajectory(std::move(*log)), out, err);
 }
 
 }  // namespace vicinity::cli

@@ -6,31 +6,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <vector>
 
 #include "readable.h"
+#include "replay/report.h"
 
 namespace vicinity::cli {
 namespace {
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
-
-// Collects lines "heading: words", headings in one column.
-class Report {
- public:
-  template <class... Arguments>
-  void line(std::string_view heading, fmt::format_string<Arguments...> words,
-            Arguments&&... arguments) {
-    text_ += fmt::format("{:<10}", heading);
-    fmt::format_to(std::back_inserter(text_), words, std::forward<Arguments>(arguments)...);
-    text_ += '\n';
-  }
-  std::string text() && { return std::move(text_); }
-
- private:
-  std::string text_;
-};
 
 std::string reason_in_words(const ReplayOutcome& outcome, const Reason& reason) {
   if (reason.link < 0) return "";
@@ -94,7 +78,7 @@ void report_energy(const ReplayOutcome& outcome, Report& report) {
   report.line("energy", "the drag took {:.4g} J out of the motion; {}{}", energy.drag,
               energy.passive
                   ? "passive: never more came out than had gone in"
-                  : fmt::format("NOT passive: up to {:.3g} J came out that had not gone in",
+                  : fmt::format("not passive: up to {:.3g} J came out that had not gone in",
                                 -energy.lowest),
               energy.unaccounted > 0
                   ? fmt::format("; {} periods could not be accounted", grouped(energy.unaccounted))
