@@ -126,6 +126,10 @@ int replay(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
   if (!options.trajectory.empty()) {
     log = read_joint_log(options.trajectory, arm.robot, columns);
     append(arm.remarks, log->remarks);
+    const auto& limiter = arm.teleoperation.limiter;
+    if (log->qd.size() > 0 && limiter && limiter->mode == LimiterMode::strict) {
+      arm.remarks.push_back("strict mode differences positions: recorded velocities are not used");
+    }
   }
   append(arm.remarks, oddities_of_place(field, arm, log));
   if (options.check_only) {
