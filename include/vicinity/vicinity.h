@@ -56,7 +56,7 @@ typedef enum vicinity_status {
 } vicinity_status;
 
 /* "ok", "started", ...; "unknown" for a number that is no status. */
-const char* vicinity_status_name(vicinity_status status);
+const char* vicinity_status_name(int status);
 
 typedef enum vicinity_direction {
   VICINITY_ALL = 0, /* drag opposes the whole velocity */
@@ -81,10 +81,10 @@ typedef struct vicinity_options {
   size_t exclude_count;
   const char* tool;   /* link that force and moment are about; null: the last one */
   const char* memory; /* "none", "sustained", "fading", "short", "rising"; null: "none" */
-  vicinity_direction direction;
-  vicinity_traversal traversal;
+  int direction;      /* vicinity_direction */
+  int traversal;      /* vicinity_traversal */
   const char* device; /* name of a known device, or a .yaml file; null: no limiter, no promise */
-  vicinity_mode mode; /* of the limiter */
+  int mode;           /* vicinity_mode, of the limiter */
   double period_s;    /* between ticks; 0.001 */
   double longest_period_s;                          /* beyond it the deadline was missed; 0.0015 */
   double gain, attenuation, lever, torque_constant; /* G, A, L [m], lambda of eq. 8-10; 1 */

@@ -82,14 +82,12 @@ int tool_link(const vicinity::RobotModel& robot, const char* name) {
                .hint = vicinity::nearest_word(name, links)});
 }
 
-// An enumerator that C can set to any number.
-template <class Value, class Choice>
-Value one_of_two(Choice choice, Value first, Value second, const char* what) {
-  if (static_cast<int>(choice) == 0) return first;
-  if (static_cast<int>(choice) == 1) return second;
-  throw Error({.where = what,
-               .what = "is none of its values",
-               .found = std::to_string(static_cast<int>(choice))});
+// An enumerator of vicinity.h, 0 or 1; C can set it to any number.
+template <class Value>
+Value one_of_two(int choice, Value first, Value second, const char* what) {
+  if (choice == 0) return first;
+  if (choice == 1) return second;
+  throw Error({.where = what, .what = "is none of its values", .found = std::to_string(choice)});
 }
 
 vicinity::BodyPointOptions body_point_options(const vicinity_options& options) {
@@ -197,11 +195,10 @@ bool has(const Names& names, int n) noexcept {
 
 extern "C" {
 
-const char* vicinity_status_name(vicinity_status status) {
+const char* vicinity_status_name(int status) {
   if (status == VICINITY_BAD_CALL) return "bad call";
-  const int number = static_cast<int>(status);
-  if (number < 0 || number > VICINITY_BAD_CALL) return "unknown";
-  return vicinity::to_string(static_cast<Status>(number));
+  if (status < 0 || status > VICINITY_BAD_CALL) return "unknown";
+  return vicinity::to_string(static_cast<Status>(status));
 }
 
 vicinity_options vicinity_default_options(void) {

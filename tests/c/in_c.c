@@ -78,7 +78,7 @@ int in_c_misuse(vicinity_arm* arm, const char** first) {
   PROMISED(strcmp(vicinity_status_name(VICINITY_OK), "ok") == 0);
   PROMISED(strcmp(vicinity_status_name(VICINITY_NOT_PASSIVE), "not passive") == 0);
   PROMISED(strcmp(vicinity_status_name(VICINITY_BAD_CALL), "bad call") == 0);
-  PROMISED(strcmp(vicinity_status_name((vicinity_status)99), "unknown") == 0);
+  PROMISED(strcmp(vicinity_status_name(99), "unknown") == 0);
 #undef PROMISED
   return wrong;
 }
