@@ -181,7 +181,8 @@ void add_arm(CLI::App& app, ArmOptions& options) {
   app.add_option("--tool", options.tool, "link that forces are about; default: the last one");
   app.add_option("--points-per-m2", options.points_per_m2, "density of body points; default: 2000");
   app.add_option("--points", options.points, "body points in all, in place of a density")
-      ->check(CLI::Range(1, 100'000'000));
+      ->check(CLI::Range(1, 100'000'000))
+      ->excludes("--points-per-m2");
   app.add_option("--memory", options.memory, "none, sustained, fading, short or rising")
       ->capture_default_str();
   app.add_option("--direction", options.direction,

@@ -74,6 +74,8 @@ const Refusal refusals[] = {
     {"MasterWithoutLever", good, {"--master", "1,1,0,1"}, "lever"},
     {"MemoryThatIsNone", good, {"--memory", "long"}, "long"},
     {"CodingThatIsNone", good, {"--coding", "loud"}, "loud"},
+    {"ModeWithoutADevice", good, {"--mode", "device"}, "--device"},
+    {"PointsByNumberAndDensity", good, {"--points", "9", "--points-per-m2", "9"}, "--points"},
     {"NoPoints", good, {"--points", "0"}, "--points"},
     {"NegativeDensity", good, {"--points-per-m2", "-5"}, "-5"},
     {"PictureOfUnknownKind", good, {"--plot", "felt.bmp"}, ".png"},

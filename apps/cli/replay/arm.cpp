@@ -88,6 +88,11 @@ void add_device(const ArmOptions& options, Arm& arm) {
   constexpr std::array modes = {std::pair{"strict", LimiterMode::strict},
                                 std::pair{"device", LimiterMode::device}};
   const LimiterMode mode = one_of("--mode", options.mode, modes);
+  if (options.device.empty() && mode == LimiterMode::device) {
+    throw Error({.where = "--mode",
+                 .what = "a mode needs a device to limit the drag for",
+                 .hint = "--device NAME or FILE.yaml"});
+  }
   TeleoperationOptions& teleoperation = arm.teleoperation;
   double rate = options.rate.value_or(usual_rate);
   arm.limiter = "none: drag as the field has it, and no promise that a device renders it stably";
