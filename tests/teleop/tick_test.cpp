@@ -225,6 +225,81 @@ TEST(Tick, StrictNeverFeedsTheMotion) {
   }
 }
 
+// What gets most out of sampled drag: the hand turns round with every tick, so that each force
+// pushes along, while the periods are as uneven as may be.
+TEST(Tick, StrictBearsAHandThatTurnsWithEveryUnevenPeriod) {
+  const RobotModel robot = small_arm();
+  for (const AxisKind axes : {AxisKind::joints, AxisKind::cartesian}) {
+    int limited = 0;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+      SCOPED_TRACE(std::string(axes == AxisKind::joints ? "joints" : "cartesian") + ", seed " +
+                   std::to_string(seed));
+      TeleoperationOptions options;
+      options.limiter = strict_limiter(axes == AxisKind::joints ? 0.001 : 0.005);
+      options.limiter->axes = axes;
+      options.limiter->ramp_s = period;
+      Teleoperation teleoperation(robot, points_of(robot), ranked(), options);
+      const Motion motion(seed);
+      std::mt19937_64 random(seed);
+      Output output;
+      double t = 0;
+      for (int k = 0; k < 4000; ++k) {
+        const double dt = random() % 2 == 0 ? period : 1.5 * period * (1 - 1e-9);
+        t += dt;
+        // Slow on the whole, so that the turns make the velocity.
+        const Vec3 turn = (k % 2 == 0 ? 1 : -1) * std::sqrt(dt / period) * Vec3(4e-4, 3e-4, 2e-4);
+        const Vec3 q = motion.at(0.02 * t) + turn;
+        const Input input{.time_s = t, .q = q.data(), .joint_count = 3};
+        (void)teleoperation.tick(input, output);
+        ASSERT_TRUE(output.energy.passive) << "tick " << k << ": " << output.energy.lowest << " J";
+        limited += output.limiter.limit == DragLimit::damping ? 1 : 0;
+      }
+    }
+    EXPECT_GT(limited, 10000);
+  }
+}
+
+// The sharp case: one axis, short and long periods in turn, steps such that each force made in a
+// short period pushes through a long one. A limiter that took the short one for T would need 1.02
+// of the damping that there is.
+TEST(Tick, StrictBearsTheWorstOfUnevenPeriods) {
+  RobotModel robot;
+  robot.name = "slide";
+  TriangleMesh bar = primitive::box({0.3, 0.0613, 0.0613});
+  robot.links = {{"base", {}}, {"bar", {{LinkGeometry::Role::collision, bar}}}};
+  Joint slide;
+  slide.name = "slide_joint";
+  slide.type = JointType::prismatic;
+  slide.parent = 0;
+  slide.axis_J = Vec3::UnitX();
+  slide.coordinate = 0;
+  robot.joints = {slide};
+  robot.coordinates = {0};
+  for (const AxisKind axes : {AxisKind::joints, AxisKind::cartesian}) {
+    TeleoperationOptions options;
+    options.limiter = strict_limiter(0.001);
+    options.limiter->axes = axes;
+    options.limiter->damping = 0.001 * Eigen::MatrixXd::Identity(axes == AxisKind::joints ? 1 : 3,
+                                                                 axes == AxisKind::joints ? 1 : 3);
+    options.limiter->ramp_s = period;
+    Teleoperation teleoperation(robot, points_of(robot), ranked(), options);
+    Output output;
+    double t = 0, q = 0;
+    int limited = 0;
+    for (int k = 0; k < 4000; ++k) {
+      const double dt = k % 2 == 0 ? period : 1.5 * period * (1 - 1e-9);
+      t += dt;
+      q += (k % 2 == 0 ? 1 : -1) * 1e-5 * std::sqrt(dt / period);
+      Input input{.time_s = t, .q = &q, .joint_count = 1};
+      input.X_WB.translation() = Vec3(0.5, -0.2, -0.25);  // just above the slab
+      (void)teleoperation.tick(input, output);
+      ASSERT_TRUE(output.energy.passive) << "tick " << k << ": " << output.energy.lowest << " J";
+      limited += output.limiter.limit == DragLimit::damping ? 1 : 0;
+    }
+    EXPECT_GT(limited, 3990);
+  }
+}
+
 TEST(Tick, NamesBadInputGivesNoForceAndRecovers) {
   const RobotModel robot = small_arm();
   TeleoperationOptions options;
