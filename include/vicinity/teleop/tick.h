@@ -92,7 +92,7 @@ struct Reason {
   int object = -1;  ///< as in ViscosityField::objects(); -1: only remembered, the point has left
   VoxelKind kind = VoxelKind::empty;
   int rank = 0;
-  double share = 0;              ///< of the sum of all points' forces, 0..1
+  double share = 0;              ///< of the power that all points take out, 0..1
   double distance_m = 0;         ///< at least this far from the surface [m]
   double time_to_contact_s = 0;  ///< at this speed, at the earliest [s]
 };
