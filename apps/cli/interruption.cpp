@@ -41,8 +41,10 @@ WhileWriting::~WhileWriting() {
   if (writers == 0 && asked != 0) _exit(exit_code);
 }
 
+bool interruption_asked() noexcept { return asked != 0; }
+
 void stop_if_interrupted() {
-  if (asked != 0) throw Interrupted();
+  if (interruption_asked()) throw Interrupted();
 }
 
 }  // namespace vicinity::cli

@@ -19,6 +19,7 @@
 #include "commands/export.h"
 #include "commands/info.h"
 #include "commands/query.h"
+#include "commands/replay.h"
 #include "commands/slice.h"
 #include "commands/trace.h"
 #include "interruption.h"
@@ -42,6 +43,7 @@ constexpr const char* welcome =
   vicinity info F               what is in a field
   vicinity query F X Y Z        what is at a point
   vicinity trace F ...          the drag on a point along a straight track
+  vicinity replay F ...         a joint log of an arm: what its operator would feel
   vicinity slice F ...          a picture of the layers
   vicinity export F -o ...      for numpy, ParaView, Blender
 
@@ -167,6 +169,65 @@ void add_trace(CLI::App& parent, Run& run) {
   command.runs(trace, run);
 }
 
+void add_arm(CLI::App& app, ArmOptions& options) {
+  app.add_option("--robot", options.robot, "URDF file of the arm");
+  app.add_option("--base", options.base, "where it stands: x,y,z,roll,pitch,yaw [m, rad]");
+  app.add_option("--scene", options.scene,
+                 "take robot, base, points, excluded links and tool from this scene's 'robot' "
+                 "block; what is said here wins");
+  app.add_option("--packages", options.packages,
+                 "folders for the package:// addresses of its meshes");
+  app.add_option("--exclude", options.exclude, "links that feel nothing: base_link,...");
+  app.add_option("--tool", options.tool, "link that forces are about; default: the last one");
+  app.add_option("--points-per-m2", options.points_per_m2, "density of body points; default: 2000");
+  app.add_option("--points", options.points, "body points in all, in place of a density")
+      ->check(CLI::Range(1, 100'000'000));
+  app.add_option("--memory", options.memory, "none, sustained, fading, short or rising")
+      ->capture_default_str();
+  app.add_option("--direction", options.direction,
+                 "all: oppose the whole velocity; closing: only what comes nearer")
+      ->capture_default_str();
+  app.add_option("--traversal", options.traversal,
+                 "swept: record every voxel passed; sampled: end points only")
+      ->capture_default_str();
+  app.add_option(
+      "--device", options.device,
+      "in the operator's hand: a known name, or a .yaml file; default: none, no limiter");
+  app.add_option("--mode", options.mode,
+                 "strict: within the device's own damping, provably passive; device: within a "
+                 "ceiling known from practice")
+      ->capture_default_str();
+  app.add_option("--master", options.master, "G,A,L,lambda of the master arm; default: 1,1,1,1");
+  app.add_option("--rate", options.rate, "ticks per second; default: the device's, or 1000");
+}
+
+void add_replay(CLI::App& parent, Run& run) {
+  Command<ReplayOptions> command(
+      parent, "replay", "Replay a joint log: torques, force and the reason for every tick",
+      "vicinity replay cell.vicinity --robot arm.urdf --base 0,0,0.8,0,0,0 --trajectory log.csv "
+      "\\\n"
+      "      --columns 't=Time*0.001,joint_1=Position1' -o felt.csv --plot felt.svg");
+  auto& [app, options] = command;
+  app.add_option("FIELD", options->field, "made by vicinity build")->required();
+  add_arm(app, options->arm);
+  app.add_option("--trajectory", options->trajectory,
+                 "joint log: CSV with a header; positions run smoothly between its lines");
+  app.add_option("--columns", options->columns,
+                 "which column is what, with a factor for its unit: t=Time*0.001,joint_1=Position1,"
+                 "qd_joint_1=Velocity1; default: t or time, and the joints' names");
+  app.add_option("--coding", options->coding,
+                 "try another one: 32,25,20,... or linear, nonlinear, jnd, paper");
+  app.add_option("--duration", options->duration,
+                 "go there and back for so long [s]; default: once");
+  app.add_flag("--realtime", options->real_time, "at the rate's pace, not as fast as it can");
+  app.add_flag("--check-only", options->check_only,
+               "load field and robot (and log), say what is odd, tick nothing");
+  app.add_option("-o,--output", options->output, "what came out, by tick: CSV, or .jsonl");
+  app.add_option("--plot", options->plot, "draw it: .svg or .png");
+  app.add_flag("--json", options->json, "the summary, for programs");
+  command.runs(replay, run);
+}
+
 void add_slice(CLI::App& parent, Run& run) {
   Command<SliceOptions> command(parent, "slice", "Draw the layers in a plane, as a picture",
                                 "vicinity slice cell.vicinity --z 0.04 -o s.png");
@@ -233,6 +294,7 @@ int run(int argc, char** argv) {
   add_info(app, chosen);
   add_query(app, chosen);
   add_trace(app, chosen);
+  add_replay(app, chosen);
   add_slice(app, chosen);
   add_export(app, chosen);
   app.footer("Example:\n  vicinity demo");
