@@ -4,8 +4,14 @@
 #include "vicinity/teleop/tick.h"
 
 #include <gtest/gtest.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -196,6 +202,87 @@ TEST(Tick, TakesNoMemory) {
     }
   }
   EXPECT_GT(felt, 0u);
+}
+
+// In a process that the kernel kills at its first system call but the one that ends it.
+TEST(Tick, MakesNoSystemCall) {
+  const RobotModel robot = small_arm();
+  TeleoperationOptions options;
+  options.memory = named_memory("fading");
+  options.limiter = strict_limiter(0.5);
+  Teleoperation teleoperation(robot, points_of(robot), ranked(), options);
+  teleoperation.swap_field(ranked());
+  const Motion motion(3);
+  Output output;
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    constexpr int refused = 77;
+    if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_STRICT) != 0) _exit(refused);
+    std::uint32_t felt = 0;
+    for (int k = 0; k < 3000; ++k) {
+      Vec3 q = motion.at(k * period);
+      if (k % 500 == 499) q.x() = std::numeric_limits<double>::quiet_NaN();
+      Input input{.time_s = k * period, .q = q.data(), .joint_count = 3};
+      if (k % 700 == 699) input.X_WB.translation().x() += 0.5;  // a jump
+      (void)teleoperation.tick(input, output);
+      felt += output.counts.points_felt;
+    }
+    syscall(SYS_exit, felt > 0 && output.counts.fields_taken == 1 ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 77) GTEST_SKIP() << "this kernel has no seccomp";
+  ASSERT_TRUE(WIFEXITED(status)) << "killed by signal " << WTERMSIG(status);
+  EXPECT_EQ(WEXITSTATUS(status), 0) << "nothing was felt, or the field was not taken";
+}
+
+// A joint beyond its limits is said, and feels as ever.
+TEST(Tick, SaysWhenAJointIsBeyondItsLimits) {
+  RobotModel robot = small_arm();
+  Teleoperation without(robot, points_of(robot), ranked(), {});
+  robot.joints[1].limits.upper = 0.1;
+  Teleoperation with(robot, points_of(robot), ranked(), {});
+  const Motion motion(2);
+  Output expected, output;
+  int beyond = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3 q = motion.at(k * period);
+    const Input input{.time_s = k * period, .q = q.data(), .joint_count = 3};
+    (void)without.tick(input, expected);
+    const Status status = with.tick(input, output);
+    if (k == 0) continue;
+    ASSERT_EQ(status == Status::beyond_joint_limits, q[1] > 0.101) << "q " << q[1];
+    ASSERT_EQ(output.torque, expected.torque);
+    beyond += status == Status::beyond_joint_limits ? 1 : 0;
+  }
+  EXPECT_GT(beyond, 0);
+}
+
+// How many points there are does not matter: each carries its share of the surface.
+TEST(Tick, FeelsTheSameWithTwoThousandAndFiftyThousandPoints) {
+  const RobotModel robot = small_arm();
+  Teleoperation few(robot, sample_body_points(robot, {.total = 2000}), ranked(), {});
+  Teleoperation many(robot, sample_body_points(robot, {.total = 50'000}), ranked(), {});
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    SCOPED_TRACE(seed);
+    const Motion motion(seed);
+    Output of_few, of_many;
+    double work_of_few = 0, work_of_many = 0;
+    for (int k = 0; k < 1000; ++k) {
+      const double t = 10. * static_cast<double>(seed) + k * period;
+      const Vec3 q = motion.at(k * period);
+      const Input input{.time_s = t, .q = q.data(), .joint_count = 3};
+      (void)few.tick(input, of_few);
+      (void)many.tick(input, of_many);
+      work_of_few += of_few.power * period;
+      work_of_many += of_many.power * period;
+    }
+    EXPECT_GT(work_of_many, 0);
+    EXPECT_NEAR(work_of_few / work_of_many, 1, 0.02);
+    RecordProperty("few_to_many_" + std::to_string(seed),
+                   std::to_string(work_of_few / work_of_many));
+  }
 }
 
 TEST(Tick, StrictNeverFeedsTheMotion) {
@@ -401,7 +488,10 @@ TEST(Tick, TakesAnotherFieldWholeWhileItRuns) {
   const ViscosityField other = ranked().with_codings(twice);
   std::atomic<bool> done{false};
   std::thread swapper([&] {
-    for (int n = 0; !done; ++n) teleoperation.swap_field(n % 2 == 0 ? other : ranked());
+    for (int n = 0; !done; ++n) {
+      teleoperation.swap_field(n % 2 == 0 ? other : ranked());
+      if (n > 20) std::this_thread::sleep_for(std::chrono::milliseconds(10));  // then at 100 Hz
+    }
   });
   // Two more, never swapped: what comes out must be one or the other, never between.
   Teleoperation once(robot, points_of(robot), ranked(), {}),
