@@ -34,6 +34,11 @@ std::int32_t way_along(int axis, VoxelKey now, VoxelKey then) noexcept {
   return way < key_span / 2 ? way : way - key_span;
 }
 
+// Whole lanes: the gap behind a link's last point holds copies of it, without area.
+std::size_t whole_lanes(const BodyPoints::Cluster& cluster) noexcept {
+  return (cluster.end - cluster.begin + BodyPoints::lane - 1) / BodyPoints::lane * BodyPoints::lane;
+}
+
 CoarseMap coarse_map(const Pose& X_WL, const Workspace& workspace, const BoundingSphere& sphere) {
   const Eigen::Matrix3d turn = X_WL.linear() / workspace.voxel_size;
   const Vec3 shift = workspace.to_grid(X_WL.translation());
@@ -69,7 +74,9 @@ Teleoperation::Body::Body(BodyPoints points, std::size_t link_count,
       drag_(points_.x.size(), 0.f),
       memories_(points_.x.size(), options.memory),
       remembers_(points_.x.size(), 0),
-      towards_W_(closing_ ? points_.x.size() : 0, Eigen::Vector3f::Zero()) {}
+      towards_x_(closing_ ? points_.x.size() : 0, 0.f),
+      towards_y_(towards_x_),
+      towards_z_(towards_x_) {}
 
 void Teleoperation::Body::restart() noexcept {
   std::fill(clusters_.begin(), clusters_.end(), ClusterState{});
@@ -154,7 +161,7 @@ void Teleoperation::Body::feel_link(const BodyPoints::LinkRange& range, const Li
       state.sums = {};
       state.highest = 0;
     } else if (closing_) {
-      sum_closing(cluster, motion, range.link);
+      drag += closing_drag(cluster, motion, range.link);
     } else {
       if ((tick_ + c) % refresh_period == 0) sum_up(cluster, state);
       sums += state.sums;
@@ -181,7 +188,7 @@ void Teleoperation::Body::wake(const BodyPoints::Cluster& cluster, ClusterState&
     memories_[p].start(0);
     remembers_[p] = 0;
     drag_[p] = 0;
-    if (closing_) towards_W_[p].setZero();
+    if (closing_) turn_towards(p, Eigen::Vector3f::Zero());
   }
 }
 
@@ -199,10 +206,9 @@ void Teleoperation::Body::look(const BodyPoints::Cluster& cluster, ClusterState&
   const bool every_point = start || look_again_ || view.field.keeps_distance();
   std::uint64_t moved = ~std::uint64_t{0} >> (BodyPoints::cluster_size - count);
   if (!every_point) {
-    // Whole lanes: the gap behind a link's last point holds copies of it.
-    const std::size_t n = (count + BodyPoints::lane - 1) / BodyPoints::lane * BodyPoints::lane;
     const std::uint32_t b = cluster.begin;
-    moved &= find_moved(&points_.x[b], &points_.y[b], &points_.z[b], &key_[b], n, map);
+    moved &= find_moved(&points_.x[b], &points_.y[b], &points_.z[b], &key_[b], whole_lanes(cluster),
+                        map);
   }
   for (; moved != 0; moved &= moved - 1) {
     const std::uint32_t p = cluster.begin + static_cast<std::uint32_t>(std::countr_zero(moved));
@@ -224,7 +230,7 @@ void Teleoperation::Body::look(const BodyPoints::Cluster& cluster, ClusterState&
       mu_e = advance(p, memory, motion.last_X_WL * p_L, to, voxel, mu, view);
     }
     if (closing_ && mu_e > 0 && view.field.records()[code].kind != VoxelKind::empty) {
-      towards_W_[p] = towards_surface(view.field, p_W).cast<float>();
+      turn_towards(p, towards_surface(view.field, p_W).cast<float>());
     }
     const std::uint8_t remembers = mu_e > 0 || memory.remembers() ? 1 : 0;
     state.remembering += remembers;
@@ -267,8 +273,8 @@ double Teleoperation::Body::advance(std::uint32_t point, PointMemories::Memory& 
 void Teleoperation::Body::sum_up(const BodyPoints::Cluster& cluster, ClusterState& state) noexcept {
   const std::uint32_t b = cluster.begin;
   const std::size_t count = cluster.end - b;
-  const std::size_t n = (count + BodyPoints::lane - 1) / BodyPoints::lane * BodyPoints::lane;
-  state.sums = sum_moments(&points_.x[b], &points_.y[b], &points_.z[b], &drag_[b], n);
+  state.sums =
+      sum_moments(&points_.x[b], &points_.y[b], &points_.z[b], &drag_[b], whole_lanes(cluster));
   state.highest = *std::max_element(&drag_[b], &drag_[b] + count);
 }
 
@@ -304,14 +310,10 @@ void Teleoperation::Body::find_largest() noexcept {
   const auto look_into = [&](std::uint32_t c, int link, const LinkMotion& motion) {
     const BodyPoints::Cluster& cluster = points_.clusters[c];
     const std::uint32_t b = cluster.begin;
-    const std::size_t n =
-        (cluster.end - b + BodyPoints::lane - 1) / BodyPoints::lane * BodyPoints::lane;
-    const MostPower most = most_power(&points_.x[b], &points_.y[b], &points_.z[b], &drag_[b], n,
-                                      motion.v_L.data(), motion.w_L.data());
-    if (most.power > largest_.power) {
-      largest_ = {
-          .point = b + static_cast<std::uint32_t>(most.point), .link = link, .power = most.power};
-    }
+    offer_largest(cluster,
+                  most_power(&points_.x[b], &points_.y[b], &points_.z[b], &drag_[b],
+                             whole_lanes(cluster), motion.v_L.data(), motion.w_L.data()),
+                  link);
   };
   double most = 0;
   std::uint32_t most_at = 0;
@@ -336,35 +338,47 @@ void Teleoperation::Body::find_largest() noexcept {
   });
 }
 
-// One dyad for each point that comes nearer: with n towards the surface and g = (n, r x n), the
-// point's drag is w g g', and its force -w (g . twist) n. Where n is not known, the whole velocity
-// is opposed.
-void Teleoperation::Body::sum_closing(const BodyPoints::Cluster& cluster, const LinkMotion& motion,
-                                      int link) noexcept {
-  Matrix6& drag = link_drag_[static_cast<std::size_t>(link)];
-  Vector6 twist;
-  twist << motion.v_WLo, motion.w_WL;
-  for (std::uint32_t p = cluster.begin; p < cluster.end; ++p) {
-    const double w = drag_[p];
-    if (!(w > 0)) continue;
-    const Vec3 r_W = motion.X_WL.linear() * position(p);
-    const Vec3 n = towards_W_[p].cast<double>();
-    double power = 0;
-    if (n.isZero()) {
-      Eigen::Matrix<double, 3, 6> velocity;
-      velocity << Eigen::Matrix3d::Identity(), -cross_matrix(r_W);
-      drag.noalias() += w * velocity.transpose() * velocity;
-      power = w * (velocity * twist).squaredNorm();
-    } else {
-      Vector6 g;
-      g << n, r_W.cross(n);
-      const double closing_speed = g.dot(twist);
-      if (!(closing_speed > 0)) continue;
-      drag.noalias() += w * g * g.transpose();
-      power = w * closing_speed * closing_speed;
+// Where it is not known where the surface lies, the whole velocity is opposed.
+Matrix6 Teleoperation::Body::closing_drag(const BodyPoints::Cluster& cluster,
+                                          const LinkMotion& motion, int link) noexcept {
+  const std::uint32_t b = cluster.begin;
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R_WL = motion.X_WL.linear();
+  const ClosingSums sums = sum_closing(
+      &points_.x[b], &points_.y[b], &points_.z[b], &towards_x_[b], &towards_y_[b], &towards_z_[b],
+      &drag_[b], whole_lanes(cluster), R_WL.data(), motion.v_WLo.data(), motion.w_WL.data());
+  offer_largest(cluster, sums.most, link);
+  Matrix6 drag;
+  for (Eigen::Index row = 0, n = 0; row < 6; ++row) {
+    for (Eigen::Index column = row; column < 6; ++column, ++n) {
+      drag(row, column) = drag(column, row) = sums.upper[n];
     }
-    if (power > largest_.power) largest_ = {.point = p, .link = link, .power = power};
   }
+  if (sums.undirected) drag += undirected_drag(cluster, motion, link);
+  return drag;
+}
+
+Matrix6 Teleoperation::Body::undirected_drag(const BodyPoints::Cluster& cluster,
+                                             const LinkMotion& motion, int link) noexcept {
+  const std::uint32_t b = cluster.begin;
+  const std::size_t n = whole_lanes(cluster);
+  float w[BodyPoints::cluster_size];
+  for (std::uint32_t p = 0; p < n; ++p) {
+    const bool known = towards_x_[b + p] != 0 || towards_y_[b + p] != 0 || towards_z_[b + p] != 0;
+    w[p] = known ? 0 : drag_[b + p];
+  }
+  offer_largest(cluster,
+                most_power(&points_.x[b], &points_.y[b], &points_.z[b], w, n, motion.v_L.data(),
+                           motion.w_L.data()),
+                link);
+  return drag_of(sum_moments(&points_.x[b], &points_.y[b], &points_.z[b], w, n), motion);
+}
+
+void Teleoperation::Body::offer_largest(const BodyPoints::Cluster& cluster, const MostPower& most,
+                                        int link) noexcept {
+  if (!(most.power > largest_.power)) return;
+  largest_ = {.point = cluster.begin + static_cast<std::uint32_t>(most.point),
+              .link = link,
+              .power = most.power};
 }
 
 Reason Teleoperation::Body::reason(const FieldView& view) const noexcept {

@@ -105,8 +105,17 @@ class Teleoperation::Body {
                  const FieldView& view) noexcept;
   void sum_up(const BodyPoints::Cluster& cluster, ClusterState& state) noexcept;
   Matrix6 drag_of(const DragMoments& sums, const LinkMotion& motion) const noexcept;
-  void sum_closing(const BodyPoints::Cluster& cluster, const LinkMotion& motion, int link) noexcept;
+  Matrix6 closing_drag(const BodyPoints::Cluster& cluster, const LinkMotion& motion,
+                       int link) noexcept;
+  Matrix6 undirected_drag(const BodyPoints::Cluster& cluster, const LinkMotion& motion,
+                          int link) noexcept;
+  void offer_largest(const BodyPoints::Cluster& cluster, const MostPower& most, int link) noexcept;
   void find_largest() noexcept;
+  void turn_towards(std::uint32_t point, const Eigen::Vector3f& surface_W) noexcept {
+    towards_x_[point] = surface_W.x();
+    towards_y_[point] = surface_W.y();
+    towards_z_[point] = surface_W.z();
+  }
   Vec3 position(std::uint32_t point) const noexcept {
     return {points_.x[point], points_.y[point], points_.z[point]};
   }
@@ -126,7 +135,7 @@ class Teleoperation::Body {
   BodyPoints::Lane drag_;  // mu_e S [N·s/m]
   PointMemories memories_;
   std::vector<std::uint8_t> remembers_;
-  std::vector<Eigen::Vector3f> towards_W_;  // `closing` only
+  BodyPoints::Lane towards_x_, towards_y_, towards_z_;  // in W; `closing` only
 
   bool look_again_ = true, moved_ = false;
   std::uint32_t tick_ = 0;

@@ -19,6 +19,10 @@ namespace {
 
 constexpr std::size_t lanes = 8;
 
+// Eight points at once, as GCC and Clang know them on every processor.
+using Floats = float __attribute__((vector_size(lanes * sizeof(float))));
+using Doubles = double __attribute__((vector_size(lanes * sizeof(double))));
+
 // Eight bytes of 0 or 1 to eight bits, the first byte to the lowest.
 std::uint64_t bits_of(const std::uint8_t* bytes) noexcept {
   std::uint64_t word = 0;
@@ -122,6 +126,58 @@ MostPower most_power(const float* x, const float* y, const float* z, const float
     }
   }
   return best;
+}
+
+VICINITY_WIDEST_VECTORS
+ClosingSums sum_closing(const float* x, const float* y, const float* z, const float* nx,
+                        const float* ny, const float* nz, const float* w, std::size_t n,
+                        const double* R_WL, const double* v, const double* omega) noexcept {
+  // Too much at once for the compiler to see that eight points are alike: they are said to be.
+  const auto load = [](const float* from, Doubles& to) {
+    Floats floats;
+    std::memcpy(&floats, from, sizeof floats);
+    to = __builtin_convertvector(floats, Doubles);
+  };
+  Doubles s[21] = {};
+  Doubles most = {}, most_at = {}, undirected = {};
+  const Doubles none = {};
+  Doubles at = {0, 1, 2, 3, 4, 5, 6, 7};
+  for (std::size_t p = 0; p < n; p += lanes, at += static_cast<double>(lanes)) {
+    Doubles px, py, pz, pw, g0, g1, g2;
+    load(x + p, px);
+    load(y + p, py);
+    load(z + p, pz);
+    load(w + p, pw);
+    load(nx + p, g0);
+    load(ny + p, g1);
+    load(nz + p, g2);
+    const Doubles rx = R_WL[0] * px + R_WL[1] * py + R_WL[2] * pz;
+    const Doubles ry = R_WL[3] * px + R_WL[4] * py + R_WL[5] * pz;
+    const Doubles rz = R_WL[6] * px + R_WL[7] * py + R_WL[8] * pz;
+    const Doubles g[6] = {g0, g1, g2, ry * g2 - rz * g1, rz * g0 - rx * g2, rx * g1 - ry * g0};
+    const Doubles closing = g[0] * v[0] + g[1] * v[1] + g[2] * v[2] + g[3] * omega[0] +
+                            g[4] * omega[1] + g[5] * omega[2];
+    const Doubles a = closing > none ? pw : none;
+    undirected += g0 * g0 + g1 * g1 + g2 * g2 > none ? none : pw;
+    const Doubles power = a * closing * closing;
+    most_at = power > most ? at : most_at;
+    most = power > most ? power : most;
+    for (int row = 0, m = 0; row < 6; ++row) {
+      const Doubles h = a * g[row];
+      for (int column = row; column < 6; ++column, ++m) s[m] += h * g[column];
+    }
+  }
+  ClosingSums sums;
+  for (std::size_t m = 0; m < 21; ++m) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) sums.upper[m] += s[m][lane];
+  }
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    sums.undirected |= undirected[lane] > 0;
+    if (most[lane] > sums.most.power) {
+      sums.most = {.power = most[lane], .point = static_cast<std::size_t>(most_at[lane])};
+    }
+  }
+  return sums;
 }
 
 }  // namespace vicinity

@@ -82,4 +82,21 @@ struct MostPower {
 MostPower most_power(const float* x, const float* y, const float* z, const float* w, std::size_t n,
                      const double* v, const double* omega) noexcept;
 
+/// One dyad w g g' for each point that comes nearer, with n the unit vector towards its surface and
+/// g = (n, r x n): its force is -w (g . twist) n.
+struct ClosingSums {
+  double upper[21] = {};  ///< of the 6 x 6 sum, row by row from the diagonal on
+  MostPower most;
+  bool undirected = false;  ///< some point has drag, but no direction: it is in no sum
+};
+
+/// @param x,y,z     positions in the link's frame, shape (n,)
+/// @param nx,ny,nz  towards the surface, in W, shape (n,); zero where not known
+/// @param R_WL      row by row, shape (9,)
+/// @param v,omega   of the link's frame, in W, shape (3,)
+/// @param n         a multiple of 16
+ClosingSums sum_closing(const float* x, const float* y, const float* z, const float* nx,
+                        const float* ny, const float* nz, const float* w, std::size_t n,
+                        const double* R_WL, const double* v, const double* omega) noexcept;
+
 }  // namespace vicinity
