@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -97,7 +98,6 @@ TEST_F(InC, TicksAreTheCoresBitForBit) {
   core.memory = named_memory("rising");
   core.direction = DragDirection::closing;
   core.limiter = limiter_options(read_device(device), LimiterMode::strict);
-  core.limiter->period_s = core.longest_period_s;
   core.master.gain = 2;
   Teleoperation teleoperation(robot, sample_body_points(robot, points), open_field(field_), core);
   Output output;
@@ -180,8 +180,8 @@ TEST_F(InC, OptionsThatCannotBeUsedAreRefusedWithOneSentence) {
       {"mode", [](vicinity_options& o) { o.device = "touch", o.mode = 2; }},
       {"touch", [](vicinity_options& o) { o.device = "tuch"; }},
       {"device mode", [](vicinity_options& o) { o.device = "touch"; }},
-      {"period_s", [](vicinity_options& o) { o.period_s = 0; }},
-      {"longest_period_s", [](vicinity_options& o) { o.longest_period_s = 1e-9; }},
+      {"longest_period_s", [](vicinity_options& o) { o.longest_period_s = 0; }},
+      {"longest_period_s", [](vicinity_options& o) { o.longest_period_s = NAN; }},
       {"lever", [](vicinity_options& o) { o.lever = 0; }},
   };
   for (const Refusal& refusal : refusals) {

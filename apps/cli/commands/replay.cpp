@@ -76,7 +76,7 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
 
 int run(const ReplayOptions& options, const ViscosityField& field, const Arm& arm,
         const JointTrajectory& trajectory, std::ostream& out, std::ostream& err) {
-  const double rate = 1 / arm.teleoperation.period_s;
+  const double rate = arm.rate;
   const Pace pace{.rate = rate,
                   .ticks = tick_count(length_of(options, trajectory), rate),
                   .real_time = options.real_time};

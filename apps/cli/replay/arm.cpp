@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "arguments.h"
+#include "demo/hot_cell.h"
 #include "drag_words.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/geometry/nearest_word.h"
@@ -108,16 +109,11 @@ void add_device(const ArmOptions& options, Arm& arm) {
                  .found = fmt::format("{:g} Hz", rate),
                  .expected = "1 to 100000 Hz"});
   }
-  teleoperation.period_s = 1 / rate;
+  arm.rate = rate;
   teleoperation.longest_period_s = late_periods / rate;
-  // What counts as on time must be reckoned with: the proof of `strict` is about that period.
-  if (teleoperation.limiter) teleoperation.limiter->period_s = teleoperation.longest_period_s;
 }
 
-}  // namespace
-
-Arm read_arm(const ArmOptions& options) {
-  const SceneRobot placed = placed_robot(options);
+Arm fit_out(RobotLoad load, const SceneRobot& placed, const ArmOptions& options) {
   Arm arm;
   arm.X_WB = placed.X_WB;
   arm.teleoperation.memory = named_memory(options.memory);
@@ -125,7 +121,6 @@ Arm read_arm(const ArmOptions& options) {
   arm.teleoperation.traversal = traversal_from(options.traversal);
   if (!options.master.empty()) arm.teleoperation.master = master_from(options.master);
   add_device(options, arm);
-  RobotLoad load = read_urdf(placed.urdf, {.package_folders = options.packages});
   arm.robot = std::move(load.robot);
   arm.remarks = std::move(load.remarks);
   arm.teleoperation.tool_link = tool_link(arm.robot, placed.tool);
@@ -140,6 +135,20 @@ Arm read_arm(const ArmOptions& options) {
                  .hint = "--packages FOLDER, where its meshes are"});
   }
   return arm;
+}
+
+}  // namespace
+
+Arm read_arm(const ArmOptions& options) {
+  const SceneRobot placed = placed_robot(options);
+  return fit_out(read_urdf(placed.urdf, {.package_folders = options.packages}), placed, options);
+}
+
+Arm hot_cell_arm(const ArmOptions& options) {
+  SceneRobot placed;
+  placed.urdf = "the hot cell's arm";
+  placed.X_WB = hot_cell_arm_base();
+  return fit_out(parse_urdf(hot_cell_arm_urdf, placed.urdf), placed, options);
 }
 
 const std::string& joint_name(const RobotModel& robot, std::size_t coordinate) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-/// The arm that is replayed: robot, body points and how it feels, from the words of the command
+/// The arm that is moved: robot, body points and how it feels, from the words of the command
 /// line.
 #pragma once
 
@@ -39,6 +39,7 @@ struct Arm {
   RobotModel robot;
   BodyPoints points;
   Pose X_WB = Pose::Identity();
+  double rate = 1000;  ///< ticks per second [Hz]
   TeleoperationOptions teleoperation;
   std::string limiter;                    ///< in words
   std::vector<std::string> remarks = {};  ///< oddities, one sentence each
@@ -46,6 +47,9 @@ struct Arm {
 
 /// Errors: throws Error for a file that cannot be used and for words that fit nothing.
 Arm read_arm(const ArmOptions& options);
+
+/// The demo's arm in the hot cell, feeling as the options say. Errors: as read_arm().
+Arm hot_cell_arm(const ArmOptions& options);
 
 /// Name of a coordinate's joint.
 const std::string& joint_name(const RobotModel& robot, std::size_t coordinate);

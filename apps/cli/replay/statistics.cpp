@@ -14,15 +14,10 @@ TimeHistogram histogram_of(std::span<const TickRecord> ticks) {
   std::vector<double> sorted;
   for (const TickRecord& tick : ticks) sorted.push_back(tick.tick_us);
   std::ranges::sort(sorted);
-  // The smallest time that a share of the ticks does not exceed.
-  const auto quantile = [&](double share) {
-    const double rank = std::ceil(share * static_cast<double>(sorted.size()));
-    return sorted[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
-  };
   TimeHistogram histogram{.bins = {},
-                          .p50_us = quantile(0.5),
-                          .p99_us = quantile(0.99),
-                          .p999_us = quantile(0.999),
+                          .p50_us = quantile(sorted, 0.5),
+                          .p99_us = quantile(sorted, 0.99),
+                          .p999_us = quantile(sorted, 0.999),
                           .max_us = sorted.back()};
   constexpr std::array steps = {1, 2, 5};
   auto at = sorted.begin();
@@ -55,6 +50,11 @@ Misses misses_of(std::span<const TickRecord> ticks) {
 }
 
 }  // namespace
+
+double quantile(std::span<const double> rising, double share) {
+  const double rank = std::ceil(share * static_cast<double>(rising.size()));
+  return rising[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
+}
 
 ReplayStatistics statistics_of(std::span<const TickRecord> ticks) {
   ReplayStatistics statistics;

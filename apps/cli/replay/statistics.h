@@ -15,6 +15,11 @@
 
 namespace vicinity::cli {
 
+/// The smallest value that a share of all values does not exceed (nearest rank).
+/// @param rising  in rising order, not empty
+/// @param share   0..1
+double quantile(std::span<const double> rising, double share);
+
 /// Times of all ticks, sorted into bins whose edges rise as 1, 2, 5, 10, ...
 struct TimeHistogram {
   struct Bin {
