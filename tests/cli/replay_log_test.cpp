@@ -37,8 +37,9 @@ TEST_F(Replay, RunsSmoothlyBetweenTheSamplesOfASlowLog) {
   expect_equal(rows, direct(parabola, static_cast<int>(rows.size())), 1e-7);
 }
 
-// 100 Hz of a motion that is no parabola. The cubic's velocity is off by some h²/12 of the third
-// derivative, a thousandth here; the rest is points that change voxels a tick sooner or later.
+// 100 Hz of a motion that is no parabola. Slopes are off by h²/6 of the third derivative (h²/3 at
+// the ends), less than a thousandth of the largest velocity here; points that change voxels a tick
+// sooner or later add to that.
 TEST_F(Replay, StaysCloseToASineThatWasLoggedSlowly) {
   const Motion sine = [](double t) -> Vec3 {
     return {0.7 + 0.3 * std::sin(4 * t), 0.2 * std::sin(3 * t), 0.03 * std::sin(5 * t)};
@@ -76,10 +77,18 @@ TEST_F(Replay, HandsRecordedVelocitiesToTheTick) {
         << ',' << qd.z() << '\n';
   }
   folder_->write("fast.csv", log.str());
-  ASSERT_EQ(
-      replay("fast.csv", {"-o", "felt.csv", "--columns", "qd_turn=w1,qd_bend=w2,qd_slide=w3"}).code,
-      0);
-  expect_equal(rows_of(*folder_ / "felt.csv"), direct(parabola, 901, {}, wrong), 1e-6);
+  ASSERT_EQ(replay("fast.csv", {"-o", "felt.csv", "--duration", "1.7", "--columns",
+                                "qd_turn=w1,qd_bend=w2,qd_slide=w3"})
+                .code,
+            0);
+  // On the way back they point the other way.
+  const Motion there_and_back = [](double t) {
+    return parabola(t > length_s ? 2 * length_s - t : t);
+  };
+  const Motion velocity = [&](double t) -> Vec3 {
+    return t > length_s ? Vec3(-wrong(2 * length_s - t)) : wrong(t);
+  };
+  expect_equal(rows_of(*folder_ / "felt.csv"), direct(there_and_back, 1701, {}, velocity), 1e-6);
 }
 
 // One motion in the hand of several loggers.

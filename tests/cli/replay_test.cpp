@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "replay_fixture.h"
@@ -30,7 +31,7 @@ TEST_F(Replay, WritesWhatADirectLoopOverTheTickGives) {
   expect_equal(rows, outputs, 1e-7);
   const RobotModel robot = read_urdf(*folder_ / "arm.urdf").robot;
   const ViscosityField field = open_field(*folder_ / "f.vicinity");
-  std::size_t reasons = 0;
+  std::set<int> ranks;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Output& output = outputs[k];
     ASSERT_EQ(rows[k].at("status"), to_string(output.status));
@@ -42,14 +43,14 @@ TEST_F(Replay, WritesWhatADirectLoopOverTheTickGives) {
       EXPECT_EQ(rows[k].at("reason_object") + rows[k].at("reason_rank"), "") << "tick " << k;
       continue;
     }
-    ++reasons;
+    ranks.insert(reason.rank);
     EXPECT_EQ(rows[k].at("reason_link"), robot.links[static_cast<std::size_t>(reason.link)].name);
     EXPECT_EQ(rows[k].at("reason_object"),
               field.objects()[static_cast<std::size_t>(reason.object)].name);
     EXPECT_EQ(rows[k].at("reason_rank"), std::to_string(reason.rank));
     EXPECT_NEAR(std::stod(rows[k].at("reason_distance_mm")), 1000 * reason.distance_m, 1e-4);
   }
-  EXPECT_GT(reasons, 100u);
+  EXPECT_THAT(ranks, testing::ElementsAre(1, 2, 3)) << "other ranks would test less";
 }
 
 TEST_F(Replay, HasTheDocumentedColumns) {
@@ -111,7 +112,7 @@ TEST_F(Replay, JsonSummaryCountsWhatTheFileHolds) {
 
 TEST_F(Replay, StrictNeverFeedsTheMotionAndShowsWhatItCost) {
   folder_->write("master.yaml",
-                 "name: bench arm\naxes: joints\naxis_count: 3\nphysical_damping: 0.002\n");
+                 "name: bench arm\naxes: joints\naxis_count: 3\nphysical_damping: 0.0002\n");
   const Answer answer = replay("log.csv", {"--device", "master.yaml", "--json"});
   ASSERT_EQ(answer.code, 0) << answer.err;
   const auto json = answer.json();
@@ -123,8 +124,8 @@ TEST_F(Replay, StrictNeverFeedsTheMotionAndShowsWhatItCost) {
 
 TEST_F(Replay, TheSceneKnowsTheArmAndTheCommandLineWins) {
   folder_->write("with_arm.yaml", std::string(small_scene) +
-                                      "robot:\n  urdf: arm.urdf\n  base: {xyz: [-0.05, -0.21, "
-                                      "0.02], rpy: [0, 0, 0.4]}\n  points_per_m2: 5000\n");
+                                      "robot:\n  urdf: arm.urdf\n  base: {xyz: [-0.12, -0.22, "
+                                      "0.02], rpy: [0, 0, -0.3]}\n  points_per_m2: 5000\n");
   ASSERT_EQ(replay("log.csv", {"-o", "plain.csv"}).code, 0);
   ASSERT_EQ(folder_
                 ->run({"replay", "f.vicinity", "--scene", "with_arm.yaml", "--points", "900",

@@ -34,9 +34,9 @@ const char* const small_arm = R"(<robot name="small_arm">
 </robot>
 )";
 
-const char* const small_arm_base = "-0.05,-0.21,0.02,0,0,0.4";
+const char* const small_arm_base = "-0.12,-0.22,0.02,0,0,-0.3";
 
-Pose small_arm_X_WB() { return pose_from_rpy({-0.05, -0.21, 0.02}, {0, 0, 0.4}); }
+Pose small_arm_X_WB() { return pose_from_rpy({-0.12, -0.22, 0.02}, {0, 0, -0.3}); }
 
 namespace {
 const Vec3 a(0.9, -0.3, -0.02), b(-0.8, 0.6, 0.05), c(0.9, -0.5, -0.03);

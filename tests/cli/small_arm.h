@@ -16,7 +16,7 @@ namespace vicinity::cli_test {
 /// 0.3 m long. Its faces lie on no face of the small scene's grid.
 extern const char* const small_arm;
 
-/// Where it stands so that it meets the block and the ball.
+/// Where it stands so that the parabola takes it through ranks 3, 2 and 1 of the block.
 extern const char* const small_arm_base;
 Pose small_arm_X_WB();
 
