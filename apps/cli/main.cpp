@@ -217,7 +217,8 @@ void add_replay(CLI::App& parent, Run& run) {
   app.add_option("--points-per-m2", options->arm.points_per_m2,
                  "density of body points; default: 2000");
   app.add_option("--points", options->arm.points, "body points in all, in place of a density")
-      ->check(CLI::Range(1, 100'000'000));
+      ->check(CLI::Range(1, 100'000'000))
+      ->excludes("--points-per-m2");
   add_feel(app, options->arm);
   app.add_option("--trajectory", options->trajectory,
                  "joint log: CSV with a header; positions run smoothly between its lines");

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "drag_words.h"
+#include "fresh_file.h"
 #include "interruption.h"
+#include "picture/canvas.h"
 #include "progress_bar.h"
 #include "replay/arm.h"
 #include "replay/arm_check.h"
@@ -56,6 +58,18 @@ double length_of(const ReplayOptions& options, const JointTrajectory& trajectory
   return *options.duration;
 }
 
+// A long run must not end with a file that cannot be written.
+void refuse_unwritable(const ReplayOptions& options) {
+  if (!options.plot.empty()) Canvas(options.plot, 1, 1);
+  for (const std::filesystem::path& path : {options.output, options.plot}) {
+    if (path.empty()) continue;
+    if (std::filesystem::is_directory(path)) {
+      throw Error({.where = path.string(), .what = "is a folder", .expected = "a file to write"});
+    }
+    const FreshFile trial(path);
+  }
+}
+
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
@@ -66,6 +80,7 @@ int run(const ReplayOptions& options, const ViscosityField& field, const Arm& ar
   const Pace pace{.rate = rate,
                   .ticks = tick_count(length_of(options, trajectory), rate),
                   .real_time = options.real_time};
+  refuse_unwritable(options);
   const WhileWriting to_the_end;  // a signal ends the loop; what there is by then is written
   Recording recording(pace.ticks, arm.robot.coordinates.size());
   Teleoperation teleoperation(arm.robot, arm.points, field, arm.teleoperation);
@@ -111,6 +126,10 @@ int replay(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
   if (!options.trajectory.empty()) {
     log = read_joint_log(options.trajectory, arm.robot, columns);
     append(arm.remarks, log->remarks);
+    const auto& limiter = arm.teleoperation.limiter;
+    if (log->qd.size() > 0 && limiter && limiter->mode == LimiterMode::strict) {
+      arm.remarks.push_back("strict mode differences positions: recorded velocities are not used");
+    }
   }
   append(arm.remarks, oddities_of_place(field, arm, log));
   if (options.check_only) {

@@ -74,12 +74,6 @@ int tool_link(const RobotModel& robot, const std::string& name) {
                .hint = nearest_word(name, links)});
 }
 
-Device device_from(const std::string& word) {
-  const std::filesystem::path path(word);
-  const bool is_file = path.extension() == ".yaml" || path.extension() == ".yml";
-  return is_file ? read_device(path) : known_device(word);
-}
-
 MasterArm master_from(const std::string& text) {
   const auto n = numbers_from("--master", text, 4);
   MasterArm master;
@@ -95,11 +89,16 @@ void add_device(const ArmOptions& options, Arm& arm) {
   constexpr std::array modes = {std::pair{"strict", LimiterMode::strict},
                                 std::pair{"device", LimiterMode::device}};
   const LimiterMode mode = one_of("--mode", options.mode, modes);
+  if (options.device.empty() && mode == LimiterMode::device) {
+    throw Error({.where = "--mode",
+                 .what = "a mode needs a device to limit the drag for",
+                 .hint = "--device NAME or FILE.yaml"});
+  }
   TeleoperationOptions& teleoperation = arm.teleoperation;
   double rate = options.rate.value_or(usual_rate);
   arm.limiter = "none: drag as the field has it, and no promise that a device renders it stably";
   if (!options.device.empty()) {
-    const Device device = device_from(options.device);
+    const Device device = find_device(options.device);
     teleoperation.limiter = limiter_options(device, mode);
     if (!options.rate && device.sample_period) rate = 1 / *device.sample_period;
     arm.limiter = fmt::format("{} mode, device '{}'", to_string(mode), device.name);

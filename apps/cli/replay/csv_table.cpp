@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
+#include <sstream>
+#include <utility>
 
 #include "vicinity/geometry/error.h"
 
@@ -30,7 +31,9 @@ std::string_view unquoted(std::string_view cell) {
 
 CsvTable::CsvTable(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  text_.assign(std::istreambuf_iterator<char>(file), {});
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  text_ = std::move(bytes).str();
   if (!file || text_.empty()) {
     throw Error({.where = path.string(), .what = "the log is empty or cannot be read"});
   }

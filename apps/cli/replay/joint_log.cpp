@@ -56,7 +56,6 @@ struct HeaderName {
 };
 
 struct Source {
-  std::string quantity;  // as --columns calls it
   std::size_t column = 0;
   double factor = 1;
 };
@@ -74,7 +73,7 @@ class Columns {
     if (stated == map_.end()) {
       for (const std::string& name : names) {
         if (const auto column = index_of(name)) {
-          return Source{quantity, *column, unit_of(*column, kind, velocity)};
+          return Source{*column, unit_of(*column, kind, velocity)};
         }
       }
       return std::nullopt;
@@ -83,7 +82,7 @@ class Columns {
     if (!column)
       refuse(quantity, "the log has no column '" + stated->second.name + "'", stated->second.name);
     const auto& factor = stated->second.factor;
-    return Source{quantity, *column, factor ? *factor : unit_of(*column, kind, velocity)};
+    return Source{*column, factor ? *factor : unit_of(*column, kind, velocity)};
   }
 
   [[noreturn]] void refuse(const std::string& quantity, const std::string& what,

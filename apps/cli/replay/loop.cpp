@@ -82,7 +82,7 @@ std::uint64_t run_in_real_time(Ticker& ticker, const Pace& pace, Watcher& watche
     watcher.done.store(k, std::memory_order_relaxed);
     const auto periods =
         static_cast<std::uint64_t>(static_cast<double>(monotonic_ns() - start) / period_ns);
-    const std::uint64_t next = std::max(k + 1, periods);
+    const std::uint64_t next = std::clamp(periods, k + 1, pace.ticks);
     skipped += next - (k + 1);
     k = next;
   }

@@ -75,14 +75,17 @@ void report_limiter(const ReplayOutcome& outcome, Report& report) {
 
 void report_energy(const ReplayOutcome& outcome, Report& report) {
   const EnergyBalance& energy = outcome.recording.energy();
-  report.line("energy", "the drag took {:.4g} J out of the motion; {}{}", energy.drag,
-              energy.passive
-                  ? "passive: never more came out than had gone in"
-                  : fmt::format("not passive: up to {:.3g} J came out that had not gone in",
-                                -energy.lowest),
-              energy.unaccounted > 0
-                  ? fmt::format("; {} periods could not be accounted", grouped(energy.unaccounted))
-                  : "");
+  const auto& limiter = outcome.arm.teleoperation.limiter;
+  std::string words = "passive: never more had come out than gone in";
+  if (!energy.passive) {
+    const bool promised = limiter && limiter->mode == LimiterMode::strict;
+    words = fmt::format("at its worst {:.3g} J more had come out than gone in{}", -energy.lowest,
+                        promised ? "" : "; only strict mode promises that none does");
+  }
+  if (energy.unaccounted > 0) {
+    words += fmt::format("; {} periods could not be accounted", grouped(energy.unaccounted));
+  }
+  report.line("energy", "the drag took {:.4g} J out of the motion; {}", energy.drag, words);
 }
 
 void report_times(const ReplayOutcome& outcome, Report& report) {
