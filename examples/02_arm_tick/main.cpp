@@ -22,7 +22,6 @@ int main(int argc, char** argv) {
   const RobotModel robot = read_urdf(argv[2]).robot;
   TeleoperationOptions options{.memory = named_memory("rising")};
   options.limiter = limiter_options(read_device(argv[3]), LimiterMode::strict);
-  options.limiter->period_s = options.longest_period_s;  // what still counts as on time
   Teleoperation arm(robot, sample_body_points(robot), field, options);
 
   using Clock = std::chrono::steady_clock;

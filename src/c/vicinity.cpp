@@ -110,14 +110,6 @@ vicinity::TeleoperationOptions teleoperation_options(const vicinity_options& opt
   result.traversal = one_of_two(options.traversal, vicinity::Traversal::swept,
                                 vicinity::Traversal::sampled, "traversal");
   result.tool_link = tool_link(robot, options.tool);
-  if (!(options.period_s > 0) || !(options.longest_period_s >= options.period_s)) {
-    throw Error({.where = "period_s",
-                 .what = "the periods cannot be used",
-                 .found = std::to_string(options.period_s) + " s, at most " +
-                          std::to_string(options.longest_period_s) + " s",
-                 .expected = "0 < period_s <= longest_period_s"});
-  }
-  result.period_s = options.period_s;
   result.longest_period_s = options.longest_period_s;
   result.master.gain = options.gain;
   result.master.attenuation = options.attenuation;
@@ -127,8 +119,6 @@ vicinity::TeleoperationOptions teleoperation_options(const vicinity_options& opt
     const auto mode = one_of_two(options.mode, vicinity::LimiterMode::strict,
                                  vicinity::LimiterMode::device, "mode");
     result.limiter = vicinity::limiter_options(vicinity::find_device(options.device), mode);
-    // What counts as on time must be reckoned with: the proof of `strict` is about that period.
-    result.limiter->period_s = result.longest_period_s;
   }
   return result;
 }
@@ -206,7 +196,6 @@ vicinity_options vicinity_default_options(void) {
   vicinity_options options{};
   options.struct_size = sizeof options;
   options.points_per_m2 = vicinity::BodyPointOptions().points_per_m2;
-  options.period_s = usual.period_s;
   options.longest_period_s = usual.longest_period_s;
   options.gain = usual.master.gain;
   options.attenuation = usual.master.attenuation;

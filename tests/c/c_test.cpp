@@ -180,8 +180,7 @@ TEST_F(InC, OptionsThatCannotBeUsedAreRefusedWithOneSentence) {
       {"mode", [](vicinity_options& o) { o.device = "touch", o.mode = 2; }},
       {"touch", [](vicinity_options& o) { o.device = "tuch"; }},
       {"device mode", [](vicinity_options& o) { o.device = "touch"; }},
-      {"period_s", [](vicinity_options& o) { o.period_s = 0; }},
-      {"longest_period_s", [](vicinity_options& o) { o.longest_period_s = 1e-9; }},
+      {"longest_period_s", [](vicinity_options& o) { o.longest_period_s = 0; }},
       {"lever", [](vicinity_options& o) { o.lever = 0; }},
   };
   for (const Refusal& refusal : refusals) {
