@@ -85,7 +85,7 @@ typedef struct vicinity_options {
   int traversal;      /* vicinity_traversal */
   const char* device; /* name of a known device, or a .yaml file; null: no limiter, no promise */
   int mode;           /* vicinity_mode, of the limiter */
-  double longest_period_s;                          /* beyond it the deadline was missed; 0.0015 */
+  double longest_period_s; /* between ticks: beyond it the deadline was missed; 0.0015 */
   double gain, attenuation, lever, torque_constant; /* G, A, L [m], lambda of eq. 8-10; 1 */
 } vicinity_options;
 
@@ -130,7 +130,7 @@ typedef struct vicinity_output {
   double scale;                       /* of the limiter, 0 to 1 */
   /* The point that contributed most. -1: nothing is felt, or the point only remembers. */
   int reason_link, reason_object, reason_rank;
-  double reason_share;             /* of the power that all points take out */
+  double reason_share;             /* of the power that all points take out, 0 to 1 */
   double reason_distance_m;        /* at least so far from the surface */
   double reason_time_to_contact_s; /* at this speed, at the earliest */
   uint32_t points_felt;

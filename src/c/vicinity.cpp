@@ -4,7 +4,6 @@
 #include "vicinity/vicinity.h"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <memory>
 #include <string>
@@ -111,11 +110,6 @@ vicinity::TeleoperationOptions teleoperation_options(const vicinity_options& opt
   result.traversal = one_of_two(options.traversal, vicinity::Traversal::swept,
                                 vicinity::Traversal::sampled, "traversal");
   result.tool_link = tool_link(robot, options.tool);
-  if (!(options.longest_period_s > 0) || !std::isfinite(options.longest_period_s)) {
-    throw Error({.where = "longest_period_s",
-                 .what = "is no time between two ticks",
-                 .found = std::to_string(options.longest_period_s) + " s"});
-  }
   result.longest_period_s = options.longest_period_s;
   result.master.gain = options.gain;
   result.master.attenuation = options.attenuation;

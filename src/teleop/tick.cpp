@@ -52,6 +52,11 @@ Eigen::Index checked_axes(const RobotModel& robot) {
   return n;
 }
 
+void check_positive(const char* what, double value) {
+  if (value > 0 && std::isfinite(value)) return;
+  throw Error({.where = what, .what = "is not a positive number", .found = std::to_string(value)});
+}
+
 }  // namespace
 
 const char* to_string(Status status) noexcept {
@@ -99,6 +104,8 @@ Teleoperation::Teleoperation(const RobotModel& robot, BodyPoints points,
       drag_(AxisMatrix::Zero(axes_of(robot), axes_of(robot))),
       view_(std::make_unique<FieldView>(field)) {
   checked(options.master);
+  check_positive("longest_period_s", options.longest_period_s);
+  check_positive("longest_jump_m", options.longest_jump_m);
   if (options.limiter) {
     LimiterOptions limits = *options.limiter;
     limits.period_s = std::max(limits.period_s, options.longest_period_s);

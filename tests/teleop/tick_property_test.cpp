@@ -24,8 +24,10 @@ constexpr double period = 0.001;
 // Sanitizers make a tick ten times as long.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr int ticks_each = 500;
+constexpr std::uint64_t arms_each = 4;
 #else
 constexpr int ticks_each = 5000;
+constexpr std::uint64_t arms_each = 20;
 #endif
 
 class Random {
@@ -208,7 +210,7 @@ class AnyArm : public testing::TestWithParam<int> {};
 TEST_P(AnyArm, IsNeverFedByStrictDrag) {
   double taken = 0;
   int limited = 0;
-  for (std::uint64_t n = 0; n < 20; ++n) {
+  for (std::uint64_t n = 0; n < arms_each; ++n) {
     const std::uint64_t seed = 100 * static_cast<std::uint64_t>(GetParam()) + n;
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -250,7 +252,7 @@ TEST_P(AnyArm, IsNeverFedByStrictDrag) {
 // power, and neither ever pushes.
 TEST_P(AnyArm, FeelsNoMoreOfClosingThanOfAll) {
   double taken = 0;
-  for (std::uint64_t n = 0; n < 5; ++n) {
+  for (std::uint64_t n = 0; n < arms_each / 4; ++n) {
     const std::uint64_t seed = 100'000 + 100 * static_cast<std::uint64_t>(GetParam()) + n;
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
