@@ -6,7 +6,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(TARGETS vicinity vicinity_geometry vicinity_mesh vicinity_voxel vicinity_layers
-                vicinity_viscosity vicinity_robot vicinity_drag vicinity_teleop
+                vicinity_viscosity vicinity_robot vicinity_drag vicinity_teleop vicinity_c
         EXPORT vicinityTargets)
 install(DIRECTORY include/vicinity DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT vicinityTargets NAMESPACE vicinity:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vicinity)

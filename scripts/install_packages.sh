@@ -12,6 +12,7 @@ packages=(
   libfmt-dev                         # text
   libassimp-dev                      # OBJ, PLY, glTF, DAE, 3MF, FBX
   libyaml-cpp-dev                    # scene files
+  libpugixml-dev                     # robots
   nlohmann-json3-dev libxxhash-dev   # what a field file says of itself, and its checksums
   libcli11-dev                       # command line
   libcairo2-dev fonts-dejavu-core    # pictures

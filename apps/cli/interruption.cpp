@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 
 namespace vicinity::cli {
@@ -12,8 +13,9 @@ namespace {
 
 constexpr int exit_code = 128 + SIGINT;  // as a shell reports it
 
-volatile std::sig_atomic_t writers = 0;
-volatile std::sig_atomic_t asked = 0;
+// A signal may arrive in any thread.
+std::atomic<int> writers = 0, asked = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "else a signal could wait for itself");
 
 // Only async-signal-safe calls in here.
 void on_signal(int) {
@@ -34,15 +36,16 @@ void catch_interruptions() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-WhileWriting::WhileWriting() noexcept { writers = writers + 1; }
+WhileWriting::WhileWriting() noexcept { ++writers; }
 
 WhileWriting::~WhileWriting() {
-  writers = writers - 1;
-  if (writers == 0 && asked != 0) _exit(exit_code);
+  if (--writers == 0 && asked != 0) _exit(exit_code);
 }
 
+bool interruption_asked() noexcept { return asked != 0; }
+
 void stop_if_interrupted() {
-  if (asked != 0) throw Interrupted();
+  if (interruption_asked()) throw Interrupted();
 }
 
 }  // namespace vicinity::cli

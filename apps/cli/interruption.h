@@ -28,6 +28,9 @@ class WhileWriting {
   WhileWriting& operator=(const WhileWriting&) = delete;
 };
 
+/// Whether a signal has asked while something was being written.
+bool interruption_asked() noexcept;
+
 /// For long writes: throws Interrupted if a signal has asked.
 void stop_if_interrupted();
 

@@ -13,12 +13,14 @@
 #include <string>
 #include <vector>
 
+#include "commands/bench_tick.h"
 #include "commands/build.h"
 #include "commands/check.h"
 #include "commands/demo.h"
 #include "commands/export.h"
 #include "commands/info.h"
 #include "commands/query.h"
+#include "commands/replay.h"
 #include "commands/reproduce.h"
 #include "commands/slice.h"
 #include "commands/trace.h"
@@ -43,9 +45,11 @@ constexpr const char* welcome =
   vicinity info F               what is in a field
   vicinity query F X Y Z        what is at a point
   vicinity trace F ...          the drag on a point along a straight track
+  vicinity replay F ...         a joint log of an arm: what its operator would feel
   vicinity slice F ...          a picture of the layers
   vicinity export F -o ...      for numpy, ParaView, Blender
   vicinity reproduce -o DIR     the paper's figures and tables, ours beside theirs
+  vicinity bench tick           what the tick of an arm costs on this machine
 
 Each of them explains itself with --help, and shows an example.
 )";
@@ -169,6 +173,73 @@ void add_trace(CLI::App& parent, Run& run) {
   command.runs(trace, run);
 }
 
+// Which arm, where it stands, and what of it feels.
+void add_arm(CLI::App& app, ArmOptions& options) {
+  app.add_option("--robot", options.robot, "URDF file of the arm");
+  app.add_option("--base", options.base, "where it stands: x,y,z,roll,pitch,yaw [m, rad]");
+  app.add_option("--scene", options.scene,
+                 "take robot, base, points, excluded links and tool from this scene's 'robot' "
+                 "block; what is said here wins");
+  app.add_option("--packages", options.packages,
+                 "folders for the package:// addresses of its meshes");
+  app.add_option("--exclude", options.exclude, "links that feel nothing: base_link,...");
+  app.add_option("--tool", options.tool, "link that forces are about; default: the last one");
+}
+
+// How it feels, and for which device.
+void add_feel(CLI::App& app, ArmOptions& options) {
+  app.add_option("--memory", options.memory, "none, sustained, fading, short or rising")
+      ->capture_default_str();
+  app.add_option("--direction", options.direction,
+                 "all: oppose the whole velocity; closing: only what comes nearer")
+      ->capture_default_str();
+  app.add_option("--traversal", options.traversal,
+                 "swept: record every voxel passed; sampled: end points only")
+      ->capture_default_str();
+  app.add_option(
+      "--device", options.device,
+      "in the operator's hand: a known name, or a .yaml file; default: none, no limiter");
+  app.add_option("--mode", options.mode,
+                 "strict: within the device's own damping, provably passive; device: within a "
+                 "ceiling known from practice")
+      ->capture_default_str();
+  app.add_option("--master", options.master, "G,A,L,lambda of the master arm; default: 1,1,1,1");
+  app.add_option("--rate", options.rate, "ticks per second; default: the device's, or 1000");
+}
+
+void add_replay(CLI::App& parent, Run& run) {
+  Command<ReplayOptions> command(
+      parent, "replay", "Replay a joint log: torques, force and the reason for every tick",
+      "vicinity replay cell.vicinity --robot arm.urdf --base 0,0,0.8,0,0,0 --trajectory log.csv "
+      "\\\n"
+      "      --columns 't=Time*0.001,joint_1=Position1' -o felt.csv --plot felt.svg");
+  auto& [app, options] = command;
+  app.add_option("FIELD", options->field, "made by vicinity build")->required();
+  add_arm(app, options->arm);
+  app.add_option("--points-per-m2", options->arm.points_per_m2,
+                 "density of body points; default: 2000");
+  app.add_option("--points", options->arm.points, "body points in all, in place of a density")
+      ->check(CLI::Range(1, 100'000'000))
+      ->excludes("--points-per-m2");
+  add_feel(app, options->arm);
+  app.add_option("--trajectory", options->trajectory,
+                 "joint log: CSV with a header; positions run smoothly between its lines");
+  app.add_option("--columns", options->columns,
+                 "which column is what, with a factor for its unit: t=Time*0.001,joint_1=Position1,"
+                 "qd_joint_1=Velocity1; default: t or time, and the joints' names");
+  app.add_option("--coding", options->coding,
+                 "try another one: 32,25,20,... or linear, nonlinear, jnd, paper");
+  app.add_option("--duration", options->duration,
+                 "go there and back for so long [s]; default: once");
+  app.add_flag("--realtime", options->real_time, "at the rate's pace, not as fast as it can");
+  app.add_flag("--check-only", options->check_only,
+               "load field and robot (and log), say what is odd, tick nothing");
+  app.add_option("-o,--output", options->output, "what came out, by tick: CSV, or .jsonl");
+  app.add_option("--plot", options->plot, "draw it: .svg or .png");
+  app.add_flag("--json", options->json, "the summary, for programs");
+  command.runs(replay, run);
+}
+
 void add_slice(CLI::App& parent, Run& run) {
   Command<SliceOptions> command(parent, "slice", "Draw the layers in a plane, as a picture",
                                 "vicinity slice cell.vicinity --z 0.04 -o s.png");
@@ -180,6 +251,26 @@ void add_slice(CLI::App& parent, Run& run) {
   app.add_option("--box", options->box, "only this part: x,y,z,x,y,z [m]");
   app.add_option("-o,--output", options->output, "picture to write: .png or .svg")->required();
   command.runs(slice, run);
+}
+
+void add_bench(CLI::App& parent, Run& run) {
+  CLI::App& bench = *parent.add_subcommand("bench", "Measure what things cost on this machine");
+  bench.require_subcommand(1);
+  bench.footer("Example:\n  vicinity bench tick");
+  Command<BenchTickOptions> command(bench, "tick", "Time the tick of an arm with many body points",
+                                    "vicinity bench tick --points 1000,100000\n"
+                                    "  vicinity bench tick cell.vicinity --robot arm.urdf");
+  auto& [app, options] = command;
+  app.add_option("FIELD", options->field,
+                 "made by vicinity build; default: the demo's hot cell, with its arm");
+  add_arm(app, options->arm);
+  app.add_option("--points", options->points, "how many body points, one number or several")
+      ->capture_default_str();
+  app.add_option("--seconds", options->seconds, "to measure each of them for")
+      ->capture_default_str();
+  add_feel(app, options->arm);
+  app.add_flag("--json", options->json, "for programs");
+  command.runs(bench_tick, run);
 }
 
 void add_demo(CLI::App& parent, Run& run) {
@@ -203,34 +294,40 @@ void add_reproduce(CLI::App& parent, Run& run) {
 }
 
 // CLI11 only says that a word was not expected; people want to know which one was meant.
-void refuse_unknown_words(CLI::App& app, int argc, char** argv) {
-  if (argc < 2) return;
-  const std::string name = argv[1];
-  if (name.starts_with('-')) return;
-  const CLI::App* command = nullptr;
-  std::vector<std::string> commands;
-  for (const CLI::App* each : app.get_subcommands({})) {
-    commands.push_back(each->get_name());
-    if (each->get_name() == name) command = each;
+void refuse_unknown_words(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* command = &app;
+  std::string name = "vicinity";
+  int n = 1;
+  for (; n < argc; ++n) {
+    std::vector<std::string> commands;
+    const CLI::App* next = nullptr;
+    for (const CLI::App* each : command->get_subcommands({})) {
+      commands.push_back(each->get_name());
+      if (each->get_name() == argv[n]) next = each;
+    }
+    if (commands.empty() || *argv[n] == '-') break;
+    if (next == nullptr) {
+      const std::string nearest = nearest_word(argv[n], commands);
+      throw Error({.where = argv[n],
+                   .what = "there is no such command",
+                   .hint = name + (nearest.empty() ? " --help" : " " + nearest)});
+    }
+    command = next;
+    name += std::string(" ") + argv[n];
   }
-  if (command == nullptr) {
-    const std::string nearest = nearest_word(name, commands);
-    throw Error({.where = name,
-                 .what = "there is no such command",
-                 .hint = nearest.empty() ? "vicinity --help" : "vicinity " + nearest});
-  }
+  if (command == &app) return;
   std::vector<std::string> known;
   for (const CLI::Option* option : command->get_options()) {
     for (const std::string& long_name : option->get_lnames()) known.push_back("--" + long_name);
   }
-  for (int n = 2; n < argc && std::string_view(argv[n]) != "--"; ++n) {
+  for (; n < argc && std::string_view(argv[n]) != "--"; ++n) {
     const std::string word = argv[n];
     const std::string option = word.substr(0, word.find('='));
     if (!option.starts_with("--") || command->get_option_no_throw(option) != nullptr) continue;
     const std::string nearest = nearest_word(option, known);
     throw Error({.where = option,
-                 .what = "vicinity " + name + " has no such option",
-                 .hint = nearest.empty() ? "vicinity " + name + " --help" : nearest});
+                 .what = name + " has no such option",
+                 .hint = nearest.empty() ? name + " --help" : nearest});
   }
 }
 
@@ -245,9 +342,11 @@ int run(int argc, char** argv) {
   add_info(app, chosen);
   add_query(app, chosen);
   add_trace(app, chosen);
+  add_replay(app, chosen);
   add_slice(app, chosen);
   add_export(app, chosen);
   add_reproduce(app, chosen);
+  add_bench(app, chosen);
   app.footer("Example:\n  vicinity demo");
 
   refuse_unknown_words(app, argc, argv);

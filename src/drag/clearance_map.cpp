@@ -35,6 +35,7 @@ void spread_along(std::vector<std::uint8_t>& distance, std::size_t count, std::s
 
 ClearanceMap::ClearanceMap(const ViscosityField& field) {
   const VoxelIndex voxels = field.workspace().dims;
+  size_ = Vec3(voxels.i, voxels.j, voxels.k);
   const auto cells_along = [&](std::int32_t n) { return (n + cell_ - 1) / cell_; };
   const auto cell_count = [&] {
     return std::int64_t{cells_along(voxels.i)} * cells_along(voxels.j) * cells_along(voxels.k);
@@ -87,7 +88,9 @@ double ClearanceMap::clearance_vox(const Vec3& grid) const noexcept {
                                      i];
   // From anywhere in a cell whose nearest occupied cell is n away, n - 1 whole cells lie between.
   // Interpolation reaches one voxel into empty space.
-  return std::max(0.0, static_cast<double>(between - 1) * cell_ - 1.0);
+  const double within = static_cast<double>(between - 1) * cell_ - 1.0;
+  const double outside = (-grid).cwiseMax(grid - size_).cwiseMax(0.0).norm() - 1.0;
+  return std::max({0.0, within, outside});
 }
 
 }  // namespace vicinity

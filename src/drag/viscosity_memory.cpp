@@ -35,27 +35,4 @@ MemoryWeights named_memory(std::string_view name) {
                .expected = "none, sustained, fading, short or rising"});
 }
 
-double ViscosityMemory::effective(const MemoryWeights& weights) const noexcept {
-  const double current = remembered_[newest_];
-  double weighted = 0, weight = 0, lowest = current, highest = current;
-  for (int i = 0; i < weights.k; ++i) {
-    const double mu = remembered_[(newest_ - static_cast<std::size_t>(i)) & mask];
-    weighted += weights.alpha[static_cast<std::size_t>(i)] * mu;
-    weight += weights.alpha[static_cast<std::size_t>(i)];
-    lowest = std::min(lowest, mu);
-    highest = std::max(highest, mu);
-  }
-  // Rounding alone could carry the mean out of the range of what it is a mean of.
-  const double mean = std::clamp(weighted / weight, lowest, highest);
-  return weights.rise_at_once ? std::max(current, mean) : mean;
-}
-
-double ViscosityMemory::highest(int k) const noexcept {
-  double highest = 0;
-  for (int i = 0; i < k; ++i) {
-    highest = std::max(highest, remembered_[(newest_ - static_cast<std::size_t>(i)) & mask]);
-  }
-  return highest;
-}
-
 }  // namespace vicinity

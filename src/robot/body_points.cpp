@@ -11,6 +11,7 @@
 #include <numeric>
 #include <utility>
 
+#include "exposed_surface.h"
 #include "surface_samples.h"
 #include "vicinity/geometry/error.h"
 
@@ -82,6 +83,7 @@ std::vector<Surface> surfaces_to_sample(const RobotModel& robot, const BodyPoint
         if (area_of(corners) > 0) surface.triangles.push_back(corners);
       }
     }
+    surface.triangles = exposed_surface(std::move(surface.triangles));
     // Summed from the smallest up: the same to the last bit whatever the order of triangles.
     std::vector<double> areas;
     for (const Corners& corners : surface.triangles) areas.push_back(area_of(corners));

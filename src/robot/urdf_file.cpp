@@ -56,8 +56,8 @@ class UrdfReader {
   UrdfReader(const std::filesystem::path& path, const UrdfOptions& options)
       : path_(path), options_(options), geometry_(path_, options_, load_.remarks) {}
 
-  RobotLoad read() {
-    const XmlElement root = parse_xml(read_text(path_), path_.string());
+  RobotLoad read(std::string_view text) {
+    const XmlElement root = parse_xml(text, path_.string());
     read_root(root);
     for (const XmlElement& element : root.children) {
       if (element.name == "link") read_link(element);
@@ -400,7 +400,12 @@ class UrdfReader {
 }  // namespace
 
 RobotLoad read_urdf(const std::filesystem::path& path, const UrdfOptions& options) {
-  return UrdfReader(path, options).read();
+  return UrdfReader(path, options).read(read_text(path));
+}
+
+RobotLoad parse_urdf(std::string_view text, const std::filesystem::path& where,
+                     const UrdfOptions& options) {
+  return UrdfReader(where, options).read(text);
 }
 
 }  // namespace vicinity

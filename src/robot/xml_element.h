@@ -23,12 +23,11 @@ struct XmlElement {
   const XmlElement* child(std::string_view wanted) const noexcept;
 };
 
-/// Reads a document and returns its root. Text between elements is skipped, comments and document
-/// types too; entities of a document type are never expanded. Works without recursion.
+/// Reads a document and returns its root, elements and attributes only. Entities of a document type
+/// are never expanded.
 ///
-/// Why not the parser that comes with urdfdom: that one recurses once for each level of nesting and
-/// is brought down by a file that nests deep enough, and urdfdom itself gives up at the first
-/// oddity, forgets lines and the order of joints, and prints.
+/// Why not through urdfdom: it gives up at the first oddity, forgets lines and the order of joints,
+/// and prints.
 ///
 /// @param where  begins every error sentence, as "where:line"
 /// Errors: throws Error for what is not well-formed, or nests deeper than 100 elements.

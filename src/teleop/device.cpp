@@ -213,4 +213,10 @@ Device read_device(const std::filesystem::path& file) {
   return parse_device(text.str(), file.string());
 }
 
+Device find_device(const std::string& name_or_file) {
+  const std::filesystem::path path(name_or_file);
+  const bool is_file = path.extension() == ".yaml" || path.extension() == ".yml";
+  return is_file ? read_device(path) : known_device(name_or_file);
+}
+
 }  // namespace vicinity

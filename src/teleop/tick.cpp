@@ -19,6 +19,8 @@ namespace {
 constexpr double limit_slack = 1e-3;
 // Square of the lever below which a direction counts as singular [m²].
 constexpr double singular_slack = 1e-6;
+// A window that holds two samples and no more, however fast they come [s].
+constexpr double plain_difference = 1e-9;
 
 Eigen::Index axes_of(const RobotModel& robot) {
   return static_cast<Eigen::Index>(robot.coordinates.size());
@@ -48,6 +50,11 @@ Eigen::Index checked_axes(const RobotModel& robot) {
                  .expected = "1 to " + std::to_string(axis_capacity)});
   }
   return n;
+}
+
+void check_positive(const char* what, double value) {
+  if (value > 0 && std::isfinite(value)) return;
+  throw Error({.where = what, .what = "is not a positive number", .found = std::to_string(value)});
 }
 
 }  // namespace
@@ -85,8 +92,10 @@ Teleoperation::Teleoperation(const RobotModel& robot, BodyPoints points,
     : options_(options),
       robot_(robot),
       kinematics_(robot),
-      velocity_({.longest_window_s = strict(options) ? 1e-9 : options.velocity_window_s,
+      velocity_({.longest_window_s = strict(options) ? plain_difference : options.velocity_window_s,
                  .noise_band = Eigen::VectorXd::Constant(checked_axes(robot), options.noise_band)}),
+      handle_velocity_(
+          {.longest_window_s = plain_difference, .noise_band = Eigen::VectorXd::Zero(3)}),
       audit_(audited_damping(robot, options)),
       body_(std::make_unique<Body>(std::move(points), robot.links.size(), options)),
       tree_(std::make_unique<TreeDrag>(robot)),
@@ -95,8 +104,12 @@ Teleoperation::Teleoperation(const RobotModel& robot, BodyPoints points,
       drag_(AxisMatrix::Zero(axes_of(robot), axes_of(robot))),
       view_(std::make_unique<FieldView>(field)) {
   checked(options.master);
+  check_positive("longest_period_s", options.longest_period_s);
+  check_positive("longest_jump_m", options.longest_jump_m);
   if (options.limiter) {
-    limiter_.emplace(*options.limiter);
+    LimiterOptions limits = *options.limiter;
+    limits.period_s = std::max(limits.period_s, options.longest_period_s);
+    limiter_.emplace(limits);
     if (options.limiter->axes == AxisKind::joints && limiter_->axis_count() != axes_of(robot)) {
       throw Error({.where = "limiter",
                    .what = "it is for another arm",
@@ -175,6 +188,10 @@ Status Teleoperation::hear(const Input& input) noexcept {
 
 bool Teleoperation::move(const Input& input) noexcept {
   kinematics_.update(q_.data(), qd_.data(), input.X_WB);
+  if (strict(options_) && cartesian(options_)) {
+    const AxisVector tool = kinematics_.p_WL(static_cast<std::size_t>(options_.tool_link));
+    handle_velocity_.measure(input.time_s, tool);
+  }
   return body_->move(kinematics_, options_.longest_jump_m);
 }
 
@@ -190,10 +207,12 @@ Status Teleoperation::limit(const Input& input, Status heard, Output& output) no
   output.limiter = {};
   output.device_force = AxisVector::Zero(q_.size());
   if (limiter_) {
+    const bool by_handle = strict(options_) && cartesian(options_);
+    const VelocityEstimator& from = by_handle ? handle_velocity_ : velocity_;
     const LimiterTick tick{.deadline_missed = missed,
                            .held = 1,
-                           .spacing_s = velocity_.spacing_s(),
-                           .window_s = velocity_.window_s(),
+                           .spacing_s = from.spacing_s(),
+                           .window_s = from.window_s(),
                            .handle_force = output.tool.force.norm()};
     if (options_.limiter->axes == AxisKind::joints) {
       output.limiter = limiter_->limit(drag_, qd_, tick);
@@ -202,9 +221,10 @@ Status Teleoperation::limit(const Input& input, Status heard, Output& output) no
       const AxisMatrix map = tool_map();
       const AxisMatrix carried = drag_.lazyProduct(map);
       const AxisMatrix handle_drag = map.transpose().lazyProduct(carried);
-      const AxisVector handle_velocity =
+      const AxisVector tool_velocity =
           kinematics_.v_WLo(static_cast<std::size_t>(options_.tool_link));
-      output.limiter = limiter_->limit(handle_drag, handle_velocity, tick);
+      output.limiter = limiter_->limit(
+          handle_drag, by_handle ? handle_velocity_.velocity() : tool_velocity, tick);
     }
     output.device_force = output.limiter.torque;
     scale = output.limiter.scale;
@@ -249,7 +269,10 @@ void Teleoperation::account(const Input& input, Output& output) noexcept {
 Status Teleoperation::rest(Status status, const Input& input, Output& output) noexcept {
   ++counts_.refused;
   if (limiter_) limiter_->drop();
-  if (status == Status::jumped) velocity_.restart();
+  if (status == Status::jumped) {
+    velocity_.restart();
+    handle_velocity_.restart();
+  }
   const AxisVector none = AxisVector::Zero(cartesian(options_) ? 3 : q_.size());
   // No force acts from now on. What the last one did on the way here cannot be known where the
   // input is not to be trusted; the audit says so.

@@ -151,7 +151,7 @@ TEST(Help, AloneItIsFriendly) {
 TEST(Help, EveryCommandShowsAnExampleOfItself) {
   const Folder folder;
   for (const char* command :
-       {"check", "build", "info", "query", "trace", "slice", "export", "demo"}) {
+       {"check", "build", "info", "query", "trace", "replay", "slice", "export", "demo"}) {
     const Answer answer = folder.run({command, "--help"});
     EXPECT_EQ(answer.code, 0) << command;
     EXPECT_THAT(answer.out, HasSubstr(std::string("Example:\n  vicinity ") + command)) << command;

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: The Vicinity authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs this build into a folder of its own, builds the first example against it from another
-# folder, and runs it. Given: BUILD (this build), EXAMPLE (its source), SCRATCH (an own folder).
+# Installs this build into a folder of its own, builds the examples against it from another folder,
+# and runs them. Given: BUILD (this build), EXAMPLES (their source), SCRATCH (an own folder), FLAGS.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
   if(NOT code EQUAL 0)
@@ -12,12 +12,29 @@ function(run)
   set(text "${text}" PARENT_SCOPE)
 endfunction()
 
+function(build_example NAME)
+  run(${CMAKE_COMMAND} -S ${EXAMPLES}/${NAME} -B ${SCRATCH}/${NAME} -G Ninja
+      -DCMAKE_PREFIX_PATH=${SCRATCH}/installed -DCMAKE_CXX_FLAGS=${FLAGS})
+  run(${CMAKE_COMMAND} --build ${SCRATCH}/${NAME})
+endfunction()
+
+function(expect_text PATTERN)
+  if(NOT text MATCHES "${PATTERN}")
+    message(FATAL_ERROR "the example printed\n${text}")
+  endif()
+endfunction()
+
 file(REMOVE_RECURSE ${SCRATCH})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/installed)
-run(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${SCRATCH}/build -G Ninja
-    -DCMAKE_PREFIX_PATH=${SCRATCH}/installed -DCMAKE_CXX_FLAGS=${FLAGS})
-run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
-run(${SCRATCH}/build/first_touch)
-if(NOT text MATCHES "100 mm away: rank 5, drag 0.00060 N")
-  message(FATAL_ERROR "the example printed\n${text}")
+
+build_example(01_first_touch)
+run(${SCRATCH}/01_first_touch/first_touch)
+expect_text("100 mm away: rank 5, drag 0.00060 N")
+
+build_example(02_arm_tick)
+set(arm ${EXAMPLES}/02_arm_tick)
+if(EXISTS ${SCRATCH}/installed/bin/vicinity)  # what the example ticks in comes from the program
+  run(${SCRATCH}/installed/bin/vicinity build ${arm}/cell.yaml -o ${SCRATCH}/cell.vicinity)
+  run(${SCRATCH}/02_arm_tick/arm_tick ${SCRATCH}/cell.vicinity ${arm}/arm.urdf ${arm}/device.yaml)
+  expect_text("most felt: [a-z_]+ near (post|bench)")
 endif()

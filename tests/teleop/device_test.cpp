@@ -121,6 +121,8 @@ TEST(Device, AFileIsReadAndAMissingOneIsNamed) {
       std::filesystem::path(testing::TempDir()) / "vicinity_arm.yaml";
   std::ofstream(file) << "name: from a file\n";
   EXPECT_EQ(read_device(file).name, "from a file");
+  EXPECT_EQ(find_device(file.string()).name, "from a file");
+  EXPECT_EQ(find_device("falcon").name, "falcon");
   std::filesystem::remove(file);
   try {
     read_device(file);

@@ -4,8 +4,14 @@
 #include "vicinity/teleop/tick.h"
 
 #include <gtest/gtest.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -198,6 +204,90 @@ TEST(Tick, TakesNoMemory) {
   EXPECT_GT(felt, 0u);
 }
 
+// In a process that the kernel kills at its first system call but the one that ends it.
+TEST(Tick, MakesNoSystemCall) {
+#ifdef __SANITIZE_THREAD__
+  GTEST_SKIP() << "the thread sanitizer has a thread of its own, which makes system calls";
+#endif
+  const RobotModel robot = small_arm();
+  TeleoperationOptions options;
+  options.memory = named_memory("fading");
+  options.limiter = strict_limiter(0.5);
+  Teleoperation teleoperation(robot, points_of(robot), ranked(), options);
+  teleoperation.swap_field(ranked());
+  const Motion motion(3);
+  Output output;
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    constexpr int refused = 77;
+    if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_STRICT) != 0) _exit(refused);
+    std::uint32_t felt = 0;
+    for (int k = 0; k < 3000; ++k) {
+      Vec3 q = motion.at(k * period);
+      if (k % 500 == 499) q.x() = std::numeric_limits<double>::quiet_NaN();
+      Input input{.time_s = k * period, .q = q.data(), .joint_count = 3};
+      if (k % 700 == 699) input.X_WB.translation().x() += 0.5;  // a jump
+      (void)teleoperation.tick(input, output);
+      felt += output.counts.points_felt;
+    }
+    syscall(SYS_exit, felt > 0 && output.counts.fields_taken == 1 ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 77) GTEST_SKIP() << "this kernel has no seccomp";
+  ASSERT_TRUE(WIFEXITED(status)) << "killed by signal " << WTERMSIG(status);
+  EXPECT_EQ(WEXITSTATUS(status), 0) << "nothing was felt, or the field was not taken";
+}
+
+// A joint beyond its limits is said, and feels as ever.
+TEST(Tick, SaysWhenAJointIsBeyondItsLimits) {
+  RobotModel robot = small_arm();
+  Teleoperation without(robot, points_of(robot), ranked(), {});
+  robot.joints[1].limits.upper = 0.1;
+  Teleoperation with(robot, points_of(robot), ranked(), {});
+  const Motion motion(2);
+  Output expected, output;
+  int beyond = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3 q = motion.at(k * period);
+    const Input input{.time_s = k * period, .q = q.data(), .joint_count = 3};
+    (void)without.tick(input, expected);
+    const Status status = with.tick(input, output);
+    if (k == 0) continue;
+    ASSERT_EQ(status == Status::beyond_joint_limits, q[1] > 0.101) << "q " << q[1];
+    ASSERT_EQ(output.torque, expected.torque);
+    beyond += status == Status::beyond_joint_limits ? 1 : 0;
+  }
+  EXPECT_GT(beyond, 0);
+}
+
+// How many points there are does not matter: each carries its share of the surface.
+TEST(Tick, FeelsTheSameWithTwoThousandAndFiftyThousandPoints) {
+  const RobotModel robot = small_arm();
+  Teleoperation few(robot, sample_body_points(robot, {.total = 2000}), ranked(), {});
+  Teleoperation many(robot, sample_body_points(robot, {.total = 50'000}), ranked(), {});
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    SCOPED_TRACE(seed);
+    const Motion motion(seed);
+    Output of_few, of_many;
+    double work_of_few = 0, work_of_many = 0;
+    for (int k = 0; k < 1000; ++k) {
+      const double t = 10. * static_cast<double>(seed) + k * period;
+      const Vec3 q = motion.at(k * period);
+      const Input input{.time_s = t, .q = q.data(), .joint_count = 3};
+      (void)few.tick(input, of_few);
+      (void)many.tick(input, of_many);
+      work_of_few += of_few.power * period;
+      work_of_many += of_many.power * period;
+    }
+    EXPECT_GT(work_of_many, 0);
+    EXPECT_NEAR(work_of_few / work_of_many, 1, 0.02);
+    RecordProperty("few_to_many_" + std::to_string(seed),
+                   std::to_string(work_of_few / work_of_many));
+  }
+}
+
 TEST(Tick, StrictNeverFeedsTheMotion) {
   const RobotModel robot = small_arm();
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
@@ -222,6 +312,81 @@ TEST(Tick, StrictNeverFeedsTheMotion) {
     }
     EXPECT_TRUE(limited) << "the limiter had nothing to do";
     EXPECT_GT(output.energy.drag, 0);
+  }
+}
+
+// What gets most out of sampled drag: the hand turns round with every tick, so that each force
+// pushes along, while the periods are as uneven as may be.
+TEST(Tick, StrictBearsAHandThatTurnsWithEveryUnevenPeriod) {
+  const RobotModel robot = small_arm();
+  for (const AxisKind axes : {AxisKind::joints, AxisKind::cartesian}) {
+    int limited = 0;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+      SCOPED_TRACE(std::string(axes == AxisKind::joints ? "joints" : "cartesian") + ", seed " +
+                   std::to_string(seed));
+      TeleoperationOptions options;
+      options.limiter = strict_limiter(axes == AxisKind::joints ? 0.001 : 0.005);
+      options.limiter->axes = axes;
+      options.limiter->ramp_s = period;
+      Teleoperation teleoperation(robot, points_of(robot), ranked(), options);
+      const Motion motion(seed);
+      std::mt19937_64 random(seed);
+      Output output;
+      double t = 0;
+      for (int k = 0; k < 4000; ++k) {
+        const double dt = random() % 2 == 0 ? period : 1.5 * period * (1 - 1e-9);
+        t += dt;
+        // Slow on the whole, so that the turns make the velocity.
+        const Vec3 turn = (k % 2 == 0 ? 1 : -1) * std::sqrt(dt / period) * Vec3(4e-4, 3e-4, 2e-4);
+        const Vec3 q = motion.at(0.02 * t) + turn;
+        const Input input{.time_s = t, .q = q.data(), .joint_count = 3};
+        (void)teleoperation.tick(input, output);
+        ASSERT_TRUE(output.energy.passive) << "tick " << k << ": " << output.energy.lowest << " J";
+        limited += output.limiter.limit == DragLimit::damping ? 1 : 0;
+      }
+    }
+    EXPECT_GT(limited, 10000);
+  }
+}
+
+// The sharp case: one axis, short and long periods in turn, steps such that each force made in a
+// short period pushes through a long one. A limiter that took the short one for T would need 1.02
+// of the damping that there is.
+TEST(Tick, StrictBearsTheWorstOfUnevenPeriods) {
+  RobotModel robot;
+  robot.name = "slide";
+  TriangleMesh bar = primitive::box({0.3, 0.0613, 0.0613});
+  robot.links = {{"base", {}}, {"bar", {{LinkGeometry::Role::collision, bar}}}};
+  Joint slide;
+  slide.name = "slide_joint";
+  slide.type = JointType::prismatic;
+  slide.parent = 0;
+  slide.axis_J = Vec3::UnitX();
+  slide.coordinate = 0;
+  robot.joints = {slide};
+  robot.coordinates = {0};
+  for (const AxisKind axes : {AxisKind::joints, AxisKind::cartesian}) {
+    TeleoperationOptions options;
+    options.limiter = strict_limiter(0.001);
+    options.limiter->axes = axes;
+    options.limiter->damping = 0.001 * Eigen::MatrixXd::Identity(axes == AxisKind::joints ? 1 : 3,
+                                                                 axes == AxisKind::joints ? 1 : 3);
+    options.limiter->ramp_s = period;
+    Teleoperation teleoperation(robot, points_of(robot), ranked(), options);
+    Output output;
+    double t = 0, q = 0;
+    int limited = 0;
+    for (int k = 0; k < 4000; ++k) {
+      const double dt = k % 2 == 0 ? period : 1.5 * period * (1 - 1e-9);
+      t += dt;
+      q += (k % 2 == 0 ? 1 : -1) * 1e-5 * std::sqrt(dt / period);
+      Input input{.time_s = t, .q = &q, .joint_count = 1};
+      input.X_WB.translation() = Vec3(0.5, -0.2, -0.25);  // just above the slab
+      (void)teleoperation.tick(input, output);
+      ASSERT_TRUE(output.energy.passive) << "tick " << k << ": " << output.energy.lowest << " J";
+      limited += output.limiter.limit == DragLimit::damping ? 1 : 0;
+    }
+    EXPECT_GT(limited, 3990);
   }
 }
 
@@ -326,7 +491,10 @@ TEST(Tick, TakesAnotherFieldWholeWhileItRuns) {
   const ViscosityField other = ranked().with_codings(twice);
   std::atomic<bool> done{false};
   std::thread swapper([&] {
-    for (int n = 0; !done; ++n) teleoperation.swap_field(n % 2 == 0 ? other : ranked());
+    for (int n = 0; !done; ++n) {
+      teleoperation.swap_field(n % 2 == 0 ? other : ranked());
+      if (n > 20) std::this_thread::sleep_for(std::chrono::milliseconds(10));  // then at 100 Hz
+    }
   });
   // Two more, never swapped: what comes out must be one or the other, never between.
   Teleoperation once(robot, points_of(robot), ranked(), {}),

@@ -17,7 +17,7 @@
 
 #include "commands/slice.h"
 #include "commands/trace.h"
-#include "demo/hot_cell_scene.h"
+#include "demo/hot_cell.h"
 #include "demo/scene_folder.h"
 #include "field_summary.h"
 #include "interruption.h"

@@ -6,12 +6,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <vector>
 
 #include "arguments.h"
 #include "commands/csv_cell.h"
+#include "drag_words.h"
 #include "fresh_file.h"
 #include "picture/chart.h"
 #include "picture/rank_palette.h"
@@ -21,18 +20,6 @@
 
 namespace vicinity::cli {
 namespace {
-
-// The same coding for every object, each with its own number of ranks and its own skin.
-ViscosityField recoded(const ViscosityField& field, const std::string& text) {
-  const bool is_name = std::isalpha(static_cast<unsigned char>(text.front())) != 0;
-  std::vector<Coding> codings;
-  for (const FieldObject& object : field.objects()) {
-    codings.push_back(
-        {.mu = is_name ? named_coding(text, object.q).mu : numbers_from("--coding", text),
-         .skin = object.coding.skin});
-  }
-  return field.with_codings(codings);
-}
 
 std::string object_name(const ViscosityField& field, const VoxelRecord& record) {
   return record.kind == VoxelKind::empty ? "" : field.objects()[record.object].name;
@@ -91,7 +78,7 @@ void plot(const TraceOptions& options, const ViscosityField& field,
                   options.direction == "all" ? "all motion" : "closing motion", options.traversal),
               .x_label = "distance along the track [m]",
               .panels = {{"viscosity [N·s/m³]", {mu, mu_e}}, {"drag [N]", {force}}},
-              .bands = bands_along(field, samples, options.speed)},
+              .strips = {{"", bands_along(field, samples, options.speed), {}}}},
              options.plot);
 }
 
@@ -114,20 +101,15 @@ std::string summary(const TraceOptions& options, const ViscosityField& field,
 }  // namespace
 
 int trace(const TraceOptions& options, std::ostream& out, std::ostream&) {
-  constexpr std::array directions = {std::pair{"all", DragDirection::all},
-                                     std::pair{"closing", DragDirection::closing}};
-  constexpr std::array traversals = {std::pair{"swept", Traversal::swept},
-                                     std::pair{"sampled", Traversal::sampled}};
   const Track track{.from_W = point_from("--from", options.from),
                     .to_W = point_from("--to", options.to),
                     .speed = options.speed,
                     .rate = options.rate};
   const DragOptions drag{.area = options.area,
                          .memory = named_memory(options.memory),
-                         .direction = one_of("--direction", options.direction, directions),
-                         .traversal = one_of("--traversal", options.traversal, traversals)};
-  ViscosityField field = open_field(options.field);
-  if (!options.coding.empty()) field = recoded(field, options.coding);
+                         .direction = direction_from(options.direction),
+                         .traversal = traversal_from(options.traversal)};
+  const ViscosityField field = recoded(open_field(options.field), options.coding);
 
   const std::vector<TraceSample> samples = vicinity::trace(field, track, drag);
   if (!options.plot.empty()) plot(options, field, samples);

@@ -15,7 +15,7 @@ namespace vicinity::cli {
 
 struct Series {
   std::string name;
-  std::vector<std::pair<double, double>> points;  ///< (x, y), x rising
+  std::vector<std::pair<double, double>> points;  ///< (x, y), x rising; y NaN: a gap
   bool steps = false;                             ///< y holds until the next point
 };
 
@@ -31,13 +31,19 @@ struct ChartBand {
   Colour colour;
 };
 
+/// What holds along the horizontal axis, in colours.
+struct ChartStrip {
+  std::string label;  ///< a short word; may be empty
+  std::vector<ChartBand> bands;
+  std::vector<std::pair<std::string, Colour>> key;  ///< what the colours mean; may be empty
+};
+
 struct Chart {
   std::string title, caption;  ///< above and below; may be empty
   std::string x_label;
   std::vector<ChartPanel> panels;
-  std::vector<ChartBand>
-      bands;                   ///< drawn as a strip along the top of the first panel; may be empty
-  bool logarithmic_x = false;  ///< the horizontal axis; values are then above zero
+  std::vector<ChartStrip> strips;  ///< drawn along the top of the first panel; may be empty
+  bool logarithmic_x = false;      ///< the horizontal axis; values are then above zero
 };
 
 /// Draws the chart to a .png or .svg file. Series differ in colour, lightness and dashes, so that

@@ -92,7 +92,7 @@ cli::Chart chart_of(const Duel& duel) {
                    series(duel.drag, "drag", position)}},
                  {"force on the hand [N]",
                   {series(duel.field, "force field", force), series(duel.drag, "drag", force)}}},
-      .bands = {}};
+      .strips = {}};
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ Outcome fig34(Workshop& workshop) {
   const std::vector<OperatorPass> passes = operator_passes(field, workshop.distances(part, 32));
   Outcome outcome{.checks = check_fig34(passes), .figures = {}};
   cli::Chart chart_of_force{
-      .title = {}, .caption = {}, .x_label = "x [voxels]", .panels = {}, .bands = {}};
+      .title = {}, .caption = {}, .x_label = "x [voxels]", .panels = {}, .strips = {}};
   CsvTable table("speed_m_s,x_vox,operator_force_N,absorbed_N,left_for_the_master_N");
   for (const OperatorPass& each : passes) {
     cli::Series needed{.name = "the operator's force", .points = {}, .steps = true},

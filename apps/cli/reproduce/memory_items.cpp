@@ -70,7 +70,7 @@ cli::Chart chart_of(std::vector<cli::ChartPanel> panels) {
           .caption = {},
           .x_label = "x [voxels]",
           .panels = std::move(panels),
-          .bands = {}};
+          .strips = {}};
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ Outcome fig7(Workshop& workshop) {
                         .caption = {},
                         .x_label = "triangles of the object",
                         .panels = {{"time of a query [ns]", {}, true}},
-                        .bands = {},
+                        .strips = {},
                         .logarithmic_x = true};
   cli::Series sequential{.name = "sequential scan", .points = {}},
       tree{.name = "tree (Embree)", .points = {}}, lookup{.name = "our lookup", .points = {}};

@@ -170,7 +170,7 @@ Outcome table1(Workshop& workshop) {
       .caption = {},
       .x_label = "rank",
       .panels = {{"cube: reach [voxels]", {}}, {"sphere: reach [voxels]", {}}},
-      .bands = {}};
+      .strips = {}};
   for (const LayerShape shape : {LayerShape::cube, LayerShape::sphere}) {
     for (const int m : {1, 2, 3, 4}) {
       const ViscosityField field = workshop.field(part, {.m = m, .q = ranks, .shape = shape});

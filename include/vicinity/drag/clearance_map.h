@@ -30,6 +30,7 @@ class ClearanceMap {
  private:
   int cell_ = 8;     // voxels to a side
   VoxelIndex dims_;  // cells along each axis
+  Vec3 size_;        // of the workspace, in voxels
   std::vector<std::uint8_t> cells_between_;
 };
 

@@ -4,6 +4,7 @@
 /// A body point on its way through the field, and what it remembers of it.
 #pragma once
 
+#include "vicinity/drag/recorded_path.h"
 #include "vicinity/drag/viscosity_memory.h"
 #include "vicinity/geometry/vec3.h"
 #include "vicinity/viscosity/field.h"
@@ -11,46 +12,20 @@
 
 namespace vicinity {
 
-/// Which voxels a point records between two positions.
-enum class Traversal {
-  swept,    ///< every voxel on the straight path, so that a fast point cannot jump a thin layer
-  sampled,  ///< the voxel it arrives in, as the paper does
-};
-
 /// One point's mutable part: the field and the weights are shared, this is its own.
 class MovingPoint {
  public:
   /// Moves the point to p_W and returns its effective viscosity mu_e [N·s/m³]. The first call
   /// starts the memory with the voxel it finds (paper: the whole buffer holds the first viscosity).
   ///
-  /// Several voxels may be entered in one call. `swept` then returns the highest mu_e on the way:
-  /// a layer that was passed between two ticks is felt in the second one, even with k = 1. At less
-  /// than a voxel a tick this is the mu_e of the paper.
+  /// Several voxels may be entered in one call: see record_path().
   ///
   /// Outside the workspace is empty space. A position that is not finite leaves the point where it
   /// is. Always use one point with the same grid; reset() it before another.
   /// Real-time: no allocation; time grows with the voxels on the path within the workspace, so that
   /// the caller decides which jump is too long to be a motion.
   double advance(const ViscosityField& field, const MemoryWeights& weights, Traversal traversal,
-                 const Vec3& p_W) noexcept {
-    return advance(field, weights, traversal, p_W_, p_W);
-  }
-
-  /// As above, for whoever knows better where the point was last: not every step of a point that
-  /// stays in its voxel, or far from everything, need be told to it.
-  double advance(const ViscosityField& field, const MemoryWeights& weights, Traversal traversal,
-                 const Vec3& from_W, const Vec3& to_W) noexcept;
-
-  /// mu_e where the point is now: advance() without what it crossed on the way there [N·s/m³].
-  double effective(const MemoryWeights& weights) const noexcept {
-    return started_ ? memory_.effective(weights) : 0;
-  }
-
-  /// Whether any viscosity that still counts is above zero. A point that remembers nothing need not
-  /// be moved through empty space.
-  bool remembers(const MemoryWeights& weights) const noexcept {
-    return started_ && memory_.highest(weights.k) > 0;
-  }
+                 const Vec3& p_W) noexcept;
 
   /// Unit vector towards the surface that the point feels (approach.h). In empty space, where it
   /// only remembers its viscosity, it remembers the direction too, so that a retreat stays free to

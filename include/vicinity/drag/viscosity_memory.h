@@ -4,6 +4,7 @@
 /// The circular memory of viscosities that turns steps into slopes (eq. 6-7, fig. 25).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string_view>
@@ -38,9 +39,29 @@ struct MemoryWeights {
 /// Errors: throws Error for another name.
 MemoryWeights named_memory(std::string_view name);
 
-/// The latest viscosities of one point, newest first. The lowest of the k latest <= effective() <=
-/// the highest, exactly: a point in even surroundings feels their viscosity to the last bit.
-/// Real-time: O(k), no allocation. Viscosities are finite and >= 0.
+/// mu_e: the weighted mean of exactly k values (eq. 7; eq. 6 where all weights are 1; its sums are
+/// read as k terms, i = 0..k-1) [N·s/m³]. The lowest of the k values <= mu_e <= the highest,
+/// exactly: a point in even surroundings feels their viscosity to the last bit.
+/// @param latest  latest(i) is the value i voxels ago, finite and >= 0, i = 0..k-1
+/// Real-time: O(k).
+template <class Latest>
+double effective_viscosity(const MemoryWeights& weights, const Latest& latest) noexcept {
+  const double current = latest(0);
+  double weighted = 0, weight = 0, lowest = current, highest = current;
+  for (int i = 0; i < weights.k; ++i) {
+    const double mu = latest(i);
+    weighted += weights.alpha[static_cast<std::size_t>(i)] * mu;
+    weight += weights.alpha[static_cast<std::size_t>(i)];
+    lowest = std::min(lowest, mu);
+    highest = std::max(highest, mu);
+  }
+  // Rounding alone could carry the mean out of the range of what it is a mean of.
+  const double mean = std::clamp(weighted / weight, lowest, highest);
+  return weights.rise_at_once ? std::max(current, mean) : mean;
+}
+
+/// The latest viscosities of one point. Real-time: O(k), no allocation. Viscosities are finite and
+/// >= 0.
 class ViscosityMemory {
  public:
   /// Fills the whole memory with mu, the viscosity of the first voxel [N·s/m³].
@@ -56,12 +77,12 @@ class ViscosityMemory {
   /// voxel has one viscosity; where viscosity is interpolated, it keeps the drag free of steps.
   void update(double mu) noexcept { remembered_[newest_] = mu; }
 
-  /// mu_e: the weighted mean of exactly k values (eq. 7; eq. 6 where all weights are 1; its sums
-  /// are read as k terms, i = 0..k-1) [N·s/m³].
-  double effective(const MemoryWeights& weights) const noexcept;
-
-  /// The highest of the k latest values.
-  double highest(int k) const noexcept;
+  /// mu_e [N·s/m³]: effective_viscosity().
+  double effective(const MemoryWeights& weights) const noexcept {
+    return effective_viscosity(weights, [this](int i) noexcept {
+      return remembered_[(newest_ - static_cast<std::size_t>(i)) & mask];
+    });
+  }
 
  private:
   static constexpr std::size_t mask = memory_capacity - 1;

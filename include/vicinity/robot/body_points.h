@@ -91,14 +91,16 @@ struct BodyPointOptions {
   std::map<std::string, NamedPoint> named = {};  ///< by link: this point instead of samples
 };
 
-/// Spreads points over the links' surfaces (all geometries that `robot` holds).
+/// Spreads points over the links' surfaces (all geometries that `robot` holds), as far as they can
+/// be reached from outside: motors, gears and inner walls of a link have no points and no share.
+/// Walls thinner than about 3 mm keep both sides.
 ///
 /// Points are evenly spread and irregular (blue noise): weighted sample elimination (Yuksel 2015)
 /// takes them from many even candidates, by distance in space, so that the two sides of a thin
 /// plate share their points. Each point's share is the area of the surface that is nearer to it
-/// than to any other, and the shares of a link add up to its mesh area times its weight, whatever
-/// the number of points. The result depends on the seed and the surfaces, and not on the order of
-/// triangles.
+/// than to any other, and the shares of a link add up to its outer surface times its weight,
+/// whatever the number of points. The result depends on the seed and the surfaces, and not on the
+/// order of triangles.
 ///
 /// Errors: throws Error for a link that the robot does not have, a density, weight or area that is
 /// negative or not finite, more than 100 million points, and an invalid robot.

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "vicinity/robot/robot_model.h"
@@ -41,5 +42,10 @@ struct RobotLoad {
 /// xacro file, say), or describes no tree: no link, two of the same name, a link that does not
 /// exist or hangs on two joints, two roots, a loop; and for numbers of a joint that cannot be read.
 RobotLoad read_urdf(const std::filesystem::path& path, const UrdfOptions& options = {});
+
+/// As read_urdf(), from text. @param where  the file it stands for: named in errors, and its folder
+/// is where relative mesh paths start
+RobotLoad parse_urdf(std::string_view text, const std::filesystem::path& where,
+                     const UrdfOptions& options = {});
 
 }  // namespace vicinity

@@ -54,6 +54,10 @@ const Device& known_device(std::string_view name);
 /// zero), or a list that fits neither one value nor the axes.
 Device read_device(const std::filesystem::path& file);
 
+/// By the word a user gives: a file where it ends in .yaml or .yml, else a known name. Errors: as
+/// read_device() and known_device().
+Device find_device(const std::string& name_or_file);
+
 /// As read_device(), from text. @param where  what errors call it
 Device parse_device(const std::string& yaml, const std::string& where);
 

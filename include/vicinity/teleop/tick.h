@@ -60,17 +60,19 @@ struct TeleoperationOptions {
   Traversal traversal = Traversal::swept;
   /// The device that renders the drag. Joints: one axis for each coordinate of the robot.
   /// Cartesian: the device's handle leads the tool. Absent: the drag is given as the field has it,
-  /// and nothing is promised about stability.
+  /// and nothing is promised about stability. Its period_s is raised to `longest_period_s`: what
+  /// still counts as on time decides how much drag is passive.
   std::optional<LimiterOptions> limiter;
   /// How velocities are found where the input has none. In `strict` mode always, from the last two
-  /// positions: the proof is about those.
+  /// positions of the device's own axes, its joints or its handle: the proof is about those.
   double velocity_window_s = 0.004;
   double noise_band = 0;  ///< half-width, all joints [rad or m]
   MasterArm master;
-  int tool_link = -1;       ///< link whose origin the tool's force is about; -1: the last one
-  double period_s = 0.001;  ///< T
-  double longest_period_s = 0.0015;  ///< beyond: the deadline was missed
-  double longest_jump_m = 0.1;       ///< by any link's origin in one tick; farther is no motion
+  int tool_link = -1;  ///< link whose origin the tool's force is about; -1: the last one
+  /// Beyond: the deadline was missed. No torque may act for longer, so whoever sends it to the
+  /// device sends zero by then. The audit assumes the worst: that the last torque was held.
+  double longest_period_s = 0.0015;
+  double longest_jump_m = 0.1;  ///< by any link's origin in one tick; farther is no motion
 };
 
 /// One joint state.
@@ -90,7 +92,7 @@ struct Reason {
   int object = -1;  ///< as in ViscosityField::objects(); -1: only remembered, the point has left
   VoxelKind kind = VoxelKind::empty;
   int rank = 0;
-  double share = 0;              ///< of the sum of all points' forces, 0..1
+  double share = 0;              ///< of the power that all points take out, 0..1
   double distance_m = 0;         ///< at least this far from the surface [m]
   double time_to_contact_s = 0;  ///< at this speed, at the earliest [s]
 };
@@ -154,7 +156,7 @@ class Teleoperation {
   TeleoperationOptions options_;
   RobotModel robot_;
   ForwardKinematics kinematics_;
-  VelocityEstimator velocity_;
+  VelocityEstimator velocity_, handle_velocity_;
   std::optional<DragLimiter> limiter_;
   EnergyAudit audit_;
   std::unique_ptr<Body> body_;

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "replay/arm.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "arguments.h"
+#include "demo/hot_cell.h"
+#include "drag_words.h"
+#include "vicinity/geometry/error.h"
+#include "vicinity/geometry/nearest_word.h"
+#include "vicinity/robot/urdf_file.h"
+#include "vicinity/teleop/device.h"
+#include "vicinity/viscosity/scene_file.h"
+
+namespace vicinity::cli {
+namespace {
+
+constexpr double usual_rate = 1000;
+// A tick that comes after this many periods or more came too late.
+constexpr double late_periods = 1.5;
+
+std::vector<std::string> words_from(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+Pose pose_from(std::string_view option, const std::string& text) {
+  const auto n = numbers_from(option, text, 6);
+  return pose_from_rpy({n[0], n[1], n[2]}, {n[3], n[4], n[5]});
+}
+
+// What the scene says, and over it what the command line says.
+SceneRobot placed_robot(const ArmOptions& options) {
+  SceneRobot robot;
+  if (!options.scene.empty()) {
+    const Scene scene = read_scene(options.scene);
+    if (!scene.robot) {
+      throw Error({.where = options.scene.string(),
+                   .what = "the scene has no robot",
+                   .expected = "a block 'robot:' with a urdf"});
+    }
+    robot = *scene.robot;
+  }
+  if (!options.robot.empty()) robot.urdf = options.robot;
+  if (!options.base.empty()) robot.X_WB = pose_from("--base", options.base);
+  if (!options.exclude.empty()) robot.exclude = words_from(options.exclude);
+  if (!options.tool.empty()) robot.tool = options.tool;
+  if (options.points_per_m2) robot.points_per_m2 = *options.points_per_m2;
+  if (robot.urdf.empty()) {
+    throw Error({.what = "no robot is given", .hint = "--robot URDF, or --scene SCENE with one"});
+  }
+  return robot;
+}
+
+int tool_link(const RobotModel& robot, const std::string& name) {
+  if (name.empty()) return -1;
+  if (const auto link = robot.find_link(name)) return *link;
+  std::vector<std::string> links;
+  for (const Link& link : robot.links) links.push_back(link.name);
+  throw Error({.where = "--tool",
+               .what = "the robot has no such link",
+               .found = "'" + name + "'",
+               .expected = "a link of '" + robot.name + "'",
+               .hint = nearest_word(name, links)});
+}
+
+MasterArm master_from(const std::string& text) {
+  const auto n = numbers_from("--master", text, 4);
+  MasterArm master;
+  master.gain = n[0];
+  master.attenuation = n[1];
+  master.lever = n[2];
+  master.torque_constant = n[3];
+  return checked(master);
+}
+
+// The device that the drag is limited for, and the period that it or the user asks for.
+void add_device(const ArmOptions& options, Arm& arm) {
+  constexpr std::array modes = {std::pair{"strict", LimiterMode::strict},
+                                std::pair{"device", LimiterMode::device}};
+  const LimiterMode mode = one_of("--mode", options.mode, modes);
+  if (options.device.empty() && mode == LimiterMode::device) {
+    throw Error({.where = "--mode",
+                 .what = "a mode needs a device to limit the drag for",
+                 .hint = "--device NAME or FILE.yaml"});
+  }
+  TeleoperationOptions& teleoperation = arm.teleoperation;
+  double rate = options.rate.value_or(usual_rate);
+  arm.limiter = "none: drag as the field has it, and no promise that a device renders it stably";
+  if (!options.device.empty()) {
+    const Device device = find_device(options.device);
+    teleoperation.limiter = limiter_options(device, mode);
+    if (!options.rate && device.sample_period) rate = 1 / *device.sample_period;
+    arm.limiter = fmt::format("{} mode, device '{}'", to_string(mode), device.name);
+  }
+  if (!(rate >= 1 && rate <= 100'000)) {
+    throw Error({.where = "--rate",
+                 .what = "ticks cannot come so often or so seldom",
+                 .found = fmt::format("{:g} Hz", rate),
+                 .expected = "1 to 100000 Hz"});
+  }
+  arm.rate = rate;
+  teleoperation.longest_period_s = late_periods / rate;
+}
+
+Arm fit_out(RobotLoad load, const SceneRobot& placed, const ArmOptions& options) {
+  Arm arm;
+  arm.X_WB = placed.X_WB;
+  arm.teleoperation.memory = named_memory(options.memory);
+  arm.teleoperation.direction = direction_from(options.direction);
+  arm.teleoperation.traversal = traversal_from(options.traversal);
+  if (!options.master.empty()) arm.teleoperation.master = master_from(options.master);
+  add_device(options, arm);
+  arm.robot = std::move(load.robot);
+  arm.remarks = std::move(load.remarks);
+  arm.teleoperation.tool_link = tool_link(arm.robot, placed.tool);
+  BodyPointOptions points;
+  points.points_per_m2 = placed.points_per_m2;
+  points.total = options.points;
+  points.exclude = placed.exclude;
+  arm.points = sample_body_points(arm.robot, points);
+  if (arm.points.count() == 0) {
+    throw Error({.where = placed.urdf.string(),
+                 .what = "no link has a surface, so that nothing of the arm can feel",
+                 .hint = "--packages FOLDER, where its meshes are"});
+  }
+  return arm;
+}
+
+}  // namespace
+
+Arm read_arm(const ArmOptions& options) {
+  const SceneRobot placed = placed_robot(options);
+  return fit_out(read_urdf(placed.urdf, {.package_folders = options.packages}), placed, options);
+}
+
+Arm hot_cell_arm(const ArmOptions& options) {
+  SceneRobot placed;
+  placed.urdf = "the hot cell's arm";
+  placed.X_WB = hot_cell_arm_base();
+  return fit_out(parse_urdf(hot_cell_arm_urdf, placed.urdf), placed, options);
+}
+
+const std::string& joint_name(const RobotModel& robot, std::size_t coordinate) {
+  return robot.joints[static_cast<std::size_t>(robot.coordinates[coordinate])].name;
+}
+
+}  // namespace vicinity::cli
