@@ -4,6 +4,7 @@
 /// Ranked layers around the paper's objects: figures 16 to 21 and table 1.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,10 @@ struct Wrapping {
 };
 
 /// Fig. 16: neighbours of rank 1 around the cube, m = 1.
-/// @param ranked   voxels of rank 1
-/// @param missing  voxels of the 3 x 3 x 3 around some boundary voxel that have no rank
 struct FirstNeighbours {
-  std::uint64_t ranked = 0, missing = 0, beyond = 0;
+  std::uint64_t ranked = 0;   ///< voxels of rank 1
+  std::uint64_t missing = 0;  ///< empty voxels beside a boundary voxel, across corners too
+  std::uint64_t beyond = 0;   ///< voxels of rank 1 that are beside none
 };
 std::vector<Check> check_fig16(const FirstNeighbours& first);
 Outcome fig16(Workshop& workshop);
