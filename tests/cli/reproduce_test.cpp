@@ -41,12 +41,27 @@ TEST(Reproduce, MakesOneItemWithItsPageVerdictFigureAndData) {
   EXPECT_THAT(text_of(folder / "r/fig22/six_tracks.csv"),
               testing::StartsWith("track,way_vox,kind,rank,mu_Ns_m3,drag_N\n"));
 
-  const std::string page = text_of(folder / "r/index.html");
+  const std::string page = text_of(folder / "r/fig22/index.html");
   EXPECT_THAT(page, HasSubstr("vicinity reproduce --only fig22"));
-  EXPECT_THAT(page, HasSubstr("href=\"fig22/six_tracks.csv\""));
+  EXPECT_THAT(page, HasSubstr("href=\"six_tracks.csv\""));
   for (const char* outside : {"http://", "https://", "<script", "<link"}) {
     EXPECT_THAT(page, Not(HasSubstr(outside))) << "the page must open from disk";
   }
+}
+
+TEST(Reproduce, OneItemLeavesTheReportAndTheOtherVerdicts) {
+  const Folder folder;
+  std::filesystem::create_directories(folder / "r");
+  folder.write("r/index.html", "the whole report");
+  folder.write("r/verdicts.json",
+               R"([{"item": "fig5", "agrees": true, "why": "a"},
+                   {"item": "fig22", "agrees": false, "why": "b"}])");
+  ASSERT_EQ(folder.run({"reproduce", "--only", "fig22", "-o", "r"}).code, 0);
+  EXPECT_EQ(text_of(folder / "r/index.html"), "the whole report");
+  const auto verdicts = nlohmann::json::parse(text_of(folder / "r/verdicts.json"));
+  ASSERT_EQ(verdicts.size(), 2u);
+  EXPECT_EQ(verdicts[0]["why"], "a");
+  EXPECT_EQ(verdicts[1]["agrees"], true);
 }
 
 TEST(Reproduce, BuildsFromTheSamePartThatItLeavesBehind) {

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -20,6 +22,7 @@
 namespace vicinity::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using report::Check;
 using report::Item;
 using report::Outcome;
@@ -90,12 +93,36 @@ Page page_of(const std::vector<Result>& results, const std::filesystem::path& fo
   return page;
 }
 
+Json verdict_as_json(const Result& result) {
+  return {
+      {"item", result.item->name}, {"agrees", result.verdict.agrees}, {"why", result.verdict.why}};
+}
+
+// The verdicts that are there already, of the items that there are.
+std::map<std::string, Json> verdicts_in(const std::filesystem::path& path) {
+  std::map<std::string, Json> verdicts;
+  std::ifstream file(path);
+  const Json json = Json::parse(file, nullptr, false);
+  if (!json.is_array()) return verdicts;
+  for (const Json& each : json) {
+    if (each.is_object() && each.contains("item") && each["item"].is_string()) {
+      verdicts[each["item"].get<std::string>()] = each;
+    }
+  }
+  return verdicts;
+}
+
+// One item made alone takes its own verdict's place, and leaves the others.
 void write_verdicts(const std::vector<Result>& results, const std::filesystem::path& path) {
-  auto json = nlohmann::ordered_json::array();
+  std::map<std::string, Json> verdicts = verdicts_in(path);
   for (const Result& result : results) {
-    json.push_back({{"item", result.item->name},
-                    {"agrees", result.verdict.agrees},
-                    {"why", result.verdict.why}});
+    verdicts[result.item->name] = verdict_as_json(result);
+  }
+  Json json = Json::array();
+  for (const Item& item : report::items()) {
+    if (const auto found = verdicts.find(item.name); found != verdicts.end()) {
+      json.push_back(found->second);
+    }
   }
   FreshFile file(path);
   file.write(json.dump(2) + '\n');
@@ -117,7 +144,10 @@ int reproduce(const ReproduceOptions& options, std::ostream& out, std::ostream& 
     results.push_back({item, std::move(outcome), std::move(verdict)});
   }
   write_verdicts(results, options.folder / "verdicts.json");
-  write_page(page_of(results, options.folder), options.folder / "index.html");
+  // An item made alone has a page of its own, beside its data; that of the whole report stays.
+  const std::filesystem::path page_folder =
+      options.only.empty() ? options.folder : options.folder / items.front()->name;
+  write_page(page_of(results, page_folder), page_folder / "index.html");
   bar.reset();
 
   for (const Result& result : results) {
@@ -126,8 +156,8 @@ int reproduce(const ReproduceOptions& options, std::ostream& out, std::ostream& 
   }
   const double took =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  out << fmt::format("{}: {} items in {}\n", (options.folder / "index.html").string(),
-                     results.size(), seconds(took));
+  out << fmt::format("{}: {} {} in {}\n", (page_folder / "index.html").string(), results.size(),
+                     results.size() == 1 ? "item" : "items", seconds(took));
   return 0;
 }
 
