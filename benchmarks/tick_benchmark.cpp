@@ -93,11 +93,7 @@ struct State {
   }
 };
 
-Pose base() {
-  Pose X_WB = Pose::Identity();
-  X_WB.translation() = Vec3(0.95, 1.1, 0);
-  return X_WB;
-}
+Pose base() { return hot_cell().robot->X_WB; }
 
 BodyPoints points(std::int64_t count) {
   return sample_body_points(arm(), {.total = static_cast<std::size_t>(count)});
@@ -108,12 +104,13 @@ void ours(benchmark::State& state, const Cell& cell, const char* memory) {
   options.memory = named_memory(memory);
   Teleoperation teleoperation(arm(), points(state.range(0)), cell.field, options);
   Output output;
+  const Pose X_WB = base();
   double t = 0, looked = 0, felt = 0, ticks = 0;
   for (auto _ : state) {
     t += period;
     const State at(t);
     benchmark::DoNotOptimize(teleoperation.tick(
-        {.time_s = t, .q = at.q.data(), .qd = at.qd.data(), .joint_count = 7, .X_WB = base()},
+        {.time_s = t, .q = at.q.data(), .qd = at.qd.data(), .joint_count = 7, .X_WB = X_WB},
         output));
     looked += output.counts.points_looked;
     felt += output.counts.points_felt;
@@ -129,11 +126,12 @@ void plain(benchmark::State& state, const Cell& cell) {
   ForwardKinematics kinematics(arm());
   std::vector<Wrench> wrenches(arm().links.size());
   std::array<double, 7> tau{};
+  const Pose X_WB = base();
   double t = 0;
   for (auto _ : state) {
     t += period;
     const State at(t);
-    kinematics.update(at.q.data(), at.qd.data(), base());
+    kinematics.update(at.q.data(), at.qd.data(), X_WB);
     for (const BodyPoints::LinkRange& range : body.links) {
       const auto link = static_cast<std::size_t>(range.link);
       const Pose X_WL = kinematics.X_WL(link);

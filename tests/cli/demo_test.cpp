@@ -34,6 +34,14 @@ TEST(Demo, LeavesAPageAFieldAndASceneThatBuildsTheSameField) {
   }
   ASSERT_EQ(folder.run({"build", "d/scene.yaml", "-o", "again.vicinity"}).code, 0);
   EXPECT_TRUE(text_of(folder / "again.vicinity") == text_of(folder / "d/hot_cell.vicinity"));
+
+  // The arm's log replays from the files that lie there, and something is felt.
+  const Answer felt = folder.run({"replay", "d/hot_cell.vicinity", "--scene", "d/scene.yaml",
+                                  "--trajectory", "d/arm_motion.csv", "-o", "felt.csv", "--json"});
+  ASSERT_EQ(felt.code, 0) << felt.err;
+  EXPECT_GT(felt.json()["strongest"]["force"], 0);
+  EXPECT_EQ(felt.json()["statuses"]["ok"], 10'500);
+  EXPECT_TRUE(text_of(folder / "felt.csv") == text_of(folder / "d/arm_felt.csv"));
 }
 
 TEST(Trace, WritesTheDocumentedColumns) {

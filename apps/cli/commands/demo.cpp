@@ -10,16 +10,20 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "commands/replay.h"
 #include "commands/slice.h"
 #include "commands/trace.h"
+#include "demo/arm_motion.h"
 #include "demo/hot_cell.h"
 #include "demo/scene_folder.h"
 #include "field_summary.h"
+#include "fresh_file.h"
 #include "interruption.h"
 #include "page.h"
 #include "picture/chart.h"
@@ -204,6 +208,29 @@ void draw(const DemoSlice& picture, const std::filesystem::path& field_file,
   slice(options, unheard, unheard);
 }
 
+// The arm's files, and what its operator would feel on the way to the vessel and back.
+nlohmann::json run_arm(const std::filesystem::path& field_file,
+                       const std::filesystem::path& folder) {
+  FreshFile urdf(folder / "hot_cell_arm.urdf");
+  urdf.write(hot_cell_arm_urdf);
+  urdf.commit();
+  write_arm_motion(folder / "arm_motion.csv");
+  ReplayOptions options;
+  options.field = field_file;
+  options.arm.scene = folder / "scene.yaml";
+  options.trajectory = folder / "arm_motion.csv";
+  options.output = folder / "arm_felt.csv";
+  options.plot = folder / "arm_felt.png";
+  options.json = true;
+  std::ostringstream summary, unheard;
+  replay(options, summary, unheard);
+  return nlohmann::json::parse(summary.str());
+}
+
+constexpr const char* arm_command =
+    "vicinity replay hot_cell.vicinity --scene scene.yaml --trajectory arm_motion.csv "
+    "-o arm_felt.csv --plot arm_felt.png";
+
 Page page_of(const std::filesystem::path& folder, const BuildResult& built,
              std::vector<std::vector<std::string>> meshes) {
   Page page{.title = "A hot cell that can be felt",
@@ -229,6 +256,17 @@ Page page_of(const std::filesystem::path& folder, const BuildResult& built,
     drag.pictures.push_back({folder / (std::string(each.name) + ".png"), each.title, each.says,
                              command_of(each, speeds[1])});
   }
+  const PageSection arm{
+      .title = "The arm",
+      .says =
+          "From joint angles alone: every point of the arm's surface, 2000 to the square metre, "
+          "feels the layer it is in, and the drag of all of them comes back as joint torques, as "
+          "force at the tool, and with a reason.",
+      .pictures = {{folder / "arm_felt.png", "To the vessel's flange and back",
+                    "The arm swings round, reaches between the two risers to the flange, waits, "
+                    "and goes back at half the speed. While it waits nothing is felt, however near "
+                    "it is; the slow way back is light.",
+                    arm_command}}};
   const PageSection scene{
       .title = "The scene",
       .says =
@@ -246,9 +284,10 @@ Page page_of(const std::filesystem::path& folder, const BuildResult& built,
       .commands = {"vicinity query hot_cell.vicinity 0.96 0.5 0.76",
                    command_of(tracks[0], speeds[1]) + " --direction closing",
                    command_of(tracks[2], speeds[1]) + " --memory rising",
+                   std::string(arm_command) + " --direction closing",
                    "vicinity export hot_cell.vicinity -o hot_cell.vti",
                    "vicinity build PART.stl --units mm --voxel-size 0.002 -o part.vicinity"}};
-  page.sections = {layers, drag, scene, next};
+  page.sections = {layers, drag, arm, scene, next};
   return page;
 }
 
@@ -270,6 +309,15 @@ int demo(const DemoOptions& options, std::ostream& out, std::ostream& err) {
     const Felt most = run_track(tracks[n], built.field, field_file, folder);
     felt += fmt::format("    {:<36} up to {:g} N·s/m³: {:.3g} N at {:g} m/s\n", tracks[n].title,
                         most.viscosity, most.newtons, speeds.back());
+  }
+  bar->show("the arm", 0);
+  {
+    const WhileWriting finish_first;
+    const nlohmann::json summary = run_arm(field_file, folder);
+    const nlohmann::json& most = summary["strongest"];
+    felt += fmt::format("    {:<36} {:.3g} N by its {}, near the {}\n", "The arm, to the flange",
+                        most["force"].get<double>(), most["link"].get<std::string>(),
+                        most["object"].get<std::string>());
   }
   for (std::size_t n = 0; n < slices.size(); ++n) {
     bar->show(slices[n].title, static_cast<double>(n) / slices.size());
@@ -295,13 +343,15 @@ int demo(const DemoOptions& options, std::ostream& out, std::ostream& err) {
     {folder}/index.html
 
   What lies beside it
-    scene.yaml, meshes/    the cell, to copy and edit
+    scene.yaml, meshes/    the cell, to copy and edit; its arm is hot_cell_arm.urdf
+    arm_motion.csv         a log of the arm's joints; arm_felt.csv is what was felt
     hot_cell.vicinity      its field
     *.png, *.svg, *.csv    layers, drag, numbers
 
   Then type, with vicinity for {program}
     vicinity query {folder}/hot_cell.vicinity 0.96 0.5 0.76
     vicinity slice {folder}/hot_cell.vicinity --z 0.98 -o flange.png
+    vicinity bench tick
     vicinity build PART.stl --units mm --voxel-size 0.002 -o part.vicinity
 )",
       fmt::arg("program", this_program()), fmt::arg("folder", folder.string()),

@@ -145,9 +145,7 @@ Arm read_arm(const ArmOptions& options) {
 }
 
 Arm hot_cell_arm(const ArmOptions& options) {
-  SceneRobot placed;
-  placed.urdf = "the hot cell's arm";
-  placed.X_WB = hot_cell_arm_base();
+  const SceneRobot placed = *parse_scene(hot_cell_scene, {}, "the hot cell").robot;
   return fit_out(parse_urdf(hot_cell_arm_urdf, placed.urdf), placed, options);
 }
 
