@@ -124,22 +124,32 @@ int ShapingElement::cell_count() const noexcept {
 // along the axes; from the last boundary voxel on this walk on, all voxels are empty (inner ones
 // lie behind boundary ones), the rest of its step is still in the element, and so each stop on the
 // way has at most the rank of its number.
-double rank_bound_vox(LayerShape shape, int m, int q) {
+std::vector<double> nearest_by_rank_vox(LayerShape shape, int m, int q) {
   if (q < 0 || q > 32) {
     throw Error({.where = "q",
                  .what = "not a number of ranks",
                  .found = std::to_string(q),
                  .expected = "0 to 32"});
   }
-  if (shape == LayerShape::distance) return 0;
+  std::vector<double> nearest;
+  for (int n = 1; n <= q; ++n) nearest.push_back((n - 1) * m);
+  if (shape == LayerShape::distance) return nearest;
   const ShapingElement element(shape, m);
-  if (shape == LayerShape::cube) return 0;  // n - 1 steps reach every offset nearer than that
-  double bound = 0;
+  if (shape == LayerShape::cube) return nearest;  // n - 1 steps reach every offset nearer than that
   SymmetricRuns steps(0);
   steps.at(0, 0) = 0;
-  for (int n = 2; n <= q; ++n) {
+  for (std::size_t n = 1; n < nearest.size(); ++n) {
     steps = sum(steps, element);
-    bound = std::max(bound, (n - 1) * m - smallest_gap_outside(steps));
+    nearest[n] = std::min(nearest[n], smallest_gap_outside(steps));
+  }
+  return nearest;
+}
+
+double rank_bound_vox(LayerShape shape, int m, int q) {
+  const std::vector<double> nearest = nearest_by_rank_vox(shape, m, q);
+  double bound = 0;
+  for (std::size_t n = 0; n < nearest.size(); ++n) {
+    bound = std::max(bound, static_cast<double>(n) * m - nearest[n]);
   }
   return bound;
 }

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "vicinity/drag/approach.h"
 #include "vicinity/drag/recorded_path.h"
+#include "vicinity/layers/shaping_element.h"
 
 namespace vicinity {
 namespace {
@@ -59,6 +62,19 @@ CoarseMap coarse_map(const Pose& X_WL, const Workspace& workspace, const Boundin
 }
 
 }  // namespace
+
+Teleoperation::FieldView::FieldView(const ViscosityField& of) : field(of), clearance(of) {
+  const double h = of.workspace().voxel_size;
+  std::map<std::tuple<LayerShape, int, int>, std::vector<double>> known;
+  for (const FieldObject& object : of.objects()) {
+    const auto [at, is_new] = known.try_emplace({object.layers, object.m, object.q});
+    if (is_new) {
+      at->second = nearest_by_rank_vox(object.layers, object.m, object.q);
+      for (double& nearest : at->second) nearest *= h;
+    }
+    nearest_m.push_back(at->second);
+  }
+}
 
 Teleoperation::Body::Body(BodyPoints points, std::size_t link_count,
                           const TeleoperationOptions& options)
@@ -401,12 +417,11 @@ Reason Teleoperation::Body::reason(const FieldView& view) const noexcept {
   if (here.record.kind == VoxelKind::empty) return reason;
   reason.object = here.record.object;
   reason.rank = here.record.rank;
-  const FieldObject& object = view.field.objects()[here.record.object];
   if (here.distance_m >= 0) {
     reason.distance_m = here.distance_m;
   } else if (here.record.kind == VoxelKind::neighbour) {
-    const double at_least = (here.record.rank - 1) * object.m * view.field.workspace().voxel_size;
-    reason.distance_m = std::max(0.0, at_least - 1e-3 * object.bound_mm);
+    const std::size_t rank = here.record.rank;
+    reason.distance_m = view.nearest_m[here.record.object][rank - 1];
   }
   const double speed = v_WR.norm();
   if (speed > 0) reason.time_to_contact_s = reason.distance_m / speed;

@@ -17,9 +17,12 @@ namespace vicinity {
 
 /// A field as the tick reads it.
 struct Teleoperation::FieldView {
-  explicit FieldView(const ViscosityField& of) : field(of), clearance(of) {}
+  explicit FieldView(const ViscosityField& of);
+
   ViscosityField field;
   ClearanceMap clearance;
+  /// By object and rank - 1: no point of such a voxel is nearer to the object [m].
+  std::vector<std::vector<double>> nearest_m;
 };
 
 /// Points sit in clusters, clusters in links. What is farther from everything than it can have

@@ -3,11 +3,13 @@
 
 #include "vicinity/layers/shaping_element.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <tuple>
 
@@ -59,31 +61,41 @@ TEST(LayerShape, HasAName) {
   EXPECT_STREQ(to_string(LayerShape::distance), "distance");
 }
 
-/// The bound of one lone voxel, by forming its layers and looking at every one of their voxels.
-double bound_by_looking(LayerShape shape, int m, int q) {
+/// How near each rank comes to one lone voxel, by forming its layers and looking at every one of
+/// their voxels.
+std::vector<double> nearest_by_looking(LayerShape shape, int m, int q) {
   VoxelSet voxel(VoxelBox{{0, 0, 0}, {1, 1, 1}});
   voxel.insert({0, 0, 0});
   triple_loop::ObjectVoxelArray ova =
       triple_loop::ranked_neighbours(voxel, VoxelSet(), shape, m, q);
-  double bound = 0;
+  std::vector<double> nearest(static_cast<std::size_t>(q), std::numeric_limits<double>::infinity());
   for (int k = ova.box.lo.k; k < ova.box.hi.k; ++k) {
     for (int j = ova.box.lo.j; j < ova.box.hi.j; ++j) {
       for (int i = ova.box.lo.i; i < ova.box.hi.i; ++i) {
         const int rank = ova.at(i, j, k);
         if (rank < 1) continue;
         const auto gap = [](int d) { return std::max(std::abs(d) - 1, 0); };
-        bound = std::max(bound, (rank - 1) * m - std::hypot(gap(i), gap(j), gap(k)));
+        double& so_far = nearest[static_cast<std::size_t>(rank - 1)];
+        so_far = std::min(so_far, std::hypot(gap(i), gap(j), gap(k)));
       }
     }
   }
-  return bound;
+  return nearest;
 }
 
 TEST(RankBound, IsTrueAndTightForALoneVoxel) {
   for (const LayerShape shape : {LayerShape::cube, LayerShape::sphere}) {
     for (int m = 1; m <= 8; ++m) {
       for (int q = 0; q * m <= 24; ++q) {
-        EXPECT_NEAR(rank_bound_vox(shape, m, q), bound_by_looking(shape, m, q), 1e-12)
+        const std::vector<double> nearest = nearest_by_looking(shape, m, q);
+        EXPECT_THAT(nearest_by_rank_vox(shape, m, q),
+                    testing::Pointwise(testing::DoubleNear(1e-12), nearest))
+            << to_string(shape) << ", m " << m << ", q " << q;
+        double bound = 0;
+        for (std::size_t n = 0; n < nearest.size(); ++n) {
+          bound = std::max(bound, static_cast<double>(n) * m - nearest[n]);
+        }
+        EXPECT_NEAR(rank_bound_vox(shape, m, q), bound, 1e-12)
             << to_string(shape) << ", m " << m << ", q " << q;
       }
     }

@@ -106,10 +106,8 @@ RankFit rank_fit(const std::string& name, const ViscosityField& field,
   const LayerShape shape = field.objects().front().layers;
   RankFit fit{.name = name, .is_cube = shape == LayerShape::cube, .m = m};
   const double stretch = fit.is_cube ? std::sqrt(3.0) : 1;
-  std::vector<double> nearest{0};
-  for (int n = 1; n <= ranks.q(); ++n) {
-    nearest.push_back((n - 1) * m - rank_bound_vox(shape, m, n));
-  }
+  std::vector<double> nearest = nearest_by_rank_vox(shape, m, ranks.q());
+  nearest.insert(nearest.begin(), 0);  // rank 0 is the boundary
   double sum = 0;
   ranks.for_each([&](const VoxelIndex& v, int rank) {
     if (rank < 1 || rank > ranks.q()) return;

@@ -45,15 +45,20 @@ class ShapingElement {
   std::vector<Row> rows_;
 };
 
-/// How much nearer to the surface than its rank says a point of a ranked voxel can be, in voxels:
-/// the largest over ranks n <= q of (n-1)*m minus the smallest gap between a voxel of rank n and a
-/// boundary voxel. Rank n says "at least (n-1)*m voxels away". Zero for `cube` and `distance`.
+/// How near to the surface a point of a voxel of each rank can be, in voxels, shape (q,): the
+/// smallest gap between a voxel of rank n and a boundary voxel. Rank n says "at least (n-1)*m
+/// voxels away", and that is so for `cube` and `distance`; a sphere's layers grow thinner than m
+/// along some directions.
 ///
 /// A lone boundary voxel attains it. It holds where no inner voxel has a face in common with an
 /// empty one, as around every closed mesh with InnerMethod::winding. Where some do (`raster`, open
 /// meshes), ranks behind them can be formed late and say more than is true.
 ///
 /// Errors: throws Error for q outside 0..32 and, but for `distance`, for m outside 1..8.
+std::vector<double> nearest_by_rank_vox(LayerShape shape, int m, int q);
+
+/// The bound of all ranks: how much nearer to the surface than its rank says a point of a ranked
+/// voxel can be, in voxels, the largest of (n-1)*m - nearest_by_rank_vox(). Errors: as that.
 double rank_bound_vox(LayerShape shape, int m, int q);
 
 }  // namespace vicinity
