@@ -246,6 +246,37 @@ TriangleMesh read_stl(const std::filesystem::path& path) {
   return mesh;
 }
 
+std::size_t count_zero_normals(const std::filesystem::path& path) {
+  const std::size_t size = readable_size(path);
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, header_size> header{};
+  file.read(header.data(), header.size());
+  std::uint32_t triangles = 0;
+  std::memcpy(&triangles, &header[header_size - sizeof triangles], sizeof triangles);
+  std::size_t count = 0;
+  if (file && size == binary_size(triangles)) {
+    std::array<char, record_size> record;
+    std::array<float, 3> normal;
+    while (file.read(record.data(), record.size())) {
+      std::memcpy(normal.data(), record.data(), sizeof normal);
+      count += normal == std::array<float, 3>{} ? 1 : 0;
+    }
+    return count;
+  }
+  file.clear();
+  file.seekg(0);
+  for (std::string word; file >> word;) {
+    if (!equals_ignoring_case(word, "normal")) continue;
+    double x = 1, y = 1, z = 1;
+    if (file >> x >> y >> z) {
+      count += x == 0 && y == 0 && z == 0 ? 1 : 0;
+    } else {
+      file.clear();  // "nan", or no STL file at all
+    }
+  }
+  return count;
+}
+
 void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path) {
   if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw Error({.where = path.string(),

@@ -18,6 +18,7 @@
 #include "vicinity/mesh/inspection.h"
 #include "vicinity/mesh/mesh_file.h"
 #include "vicinity/mesh/primitive.h"
+#include "vicinity/mesh/stl_file.h"
 
 namespace vicinity {
 namespace {
@@ -103,6 +104,11 @@ void remark_inspection(const TriangleMesh& mesh, const fs::path& path,
   for (const MeshProblem& problem : inspect(mesh).problems) {
     remarks.push_back(
         fmt::format("mesh {}: {} {}", path.filename().string(), problem.count, problem.what));
+  }
+  if (lower_case(path.extension().string()) != ".stl") return;
+  if (const std::size_t zero_normals = count_zero_normals(path); zero_normals > 0) {
+    remarks.push_back(fmt::format("mesh {}: {} stored normals are zero; the winding is used",
+                                  path.filename().string(), zero_normals));
   }
 }
 

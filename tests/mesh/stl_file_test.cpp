@@ -10,6 +10,8 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <random>
@@ -146,6 +148,31 @@ TEST(StlFile, WeldsAsAMapOfExactCoordinatesWouldInOrderOfFirstAppearance) {
       for (const double x : v) EXPECT_FALSE(x == 0 && std::signbit(x));
     }
   }
+}
+
+TEST(StlFile, CountsTheNormalsThatAreZero) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "vicinity_normals.stl";
+  write_stl(primitive::box({1, 1, 1}), file);
+  EXPECT_EQ(count_zero_normals(file), 0u);
+  {
+    std::fstream change(file, std::ios::in | std::ios::out | std::ios::binary);
+    for (const int triangle : {0, 7}) {
+      change.seekp(84 + 50 * triangle);
+      change.write("\0\0\0\0\0\0\0\x80\0\0\0\0", 12);  // 0, -0, 0
+    }
+  }
+  EXPECT_EQ(count_zero_normals(file), 2u);
+  std::ofstream(file) << "solid x\n facet normal 0 0 0\n outer loop\n vertex 0 0 0\n"
+                         " vertex 1 0 0\n vertex 0 1 0\n endloop\n endfacet\n"
+                         " facet normal nan nan nan\n outer loop\n vertex 0 0 0\n"
+                         " vertex 1 0 0\n vertex 0 1 0\n endloop\n endfacet\n"
+                         " facet normal 0 -0.0 0e5\n outer loop\n vertex 0 0 0\n"
+                         " vertex 1 0 0\n vertex 0 1 0\n endloop\n endfacet\nendsolid x\n";
+  EXPECT_EQ(count_zero_normals(file), 2u);
+  std::ofstream(file) << "normal";
+  EXPECT_EQ(count_zero_normals(file), 0u);
+  std::filesystem::remove(file);
 }
 
 TEST(StlFile, TheWordSolidDoesNotMakeAFileAscii) {

@@ -153,6 +153,9 @@ TEST(Urdf, PhantomOmniLoadsWithEveryOddityReported) {
   EXPECT_THAT(load.remarks, Contains(HasSubstr("no inertia")));
   EXPECT_THAT(load.remarks,
               Contains(AllOf(HasSubstr("'yaw' cannot be at zero"), HasSubstr("3.92 to 8.83"))));
+  for (const char* mesh : {"base.stl: 2848", "torso.stl: 5676", "tip.stl: 7694"}) {
+    EXPECT_THAT(load.remarks, Contains(AllOf(HasSubstr(mesh), HasSubstr("normals are zero"))));
+  }
   for (const Link& link : load.robot.links) {
     ASSERT_EQ(link.geometries.size(), 1u);
     EXPECT_EQ(link.geometries[0].role, LinkGeometry::Role::visual);

@@ -4,6 +4,7 @@
 /// STL files, binary and ASCII.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 
 #include "vicinity/mesh/triangle_mesh.h"
@@ -20,5 +21,10 @@ TriangleMesh read_stl(const std::filesystem::path& path);
 /// Writes a binary STL file, beside and renamed into place. Coordinates are rounded to float.
 /// Errors: throws Error where the file cannot be written.
 void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path);
+
+/// How many triangles of an STL file carry a normal of zero. read_stl() does not mind: it goes by
+/// the winding. Programs that go by normals find no side on such triangles. Errors: throws Error
+/// for a file that cannot be opened; what is no STL file has none.
+std::size_t count_zero_normals(const std::filesystem::path& path);
 
 }  // namespace vicinity
