@@ -16,8 +16,8 @@ namespace vicinity {
 ///
 /// Voxels are 1 mm, or larger on links of more than 8 litres or 2 m. A triangle stays if any point
 /// of it is within two voxels of the space outside, so that a wall thinner than about 3 mm keeps
-/// both its sides; holes wider than a voxel let the outside in. No triangle of a surface that can
-/// be touched is left out. Does not depend on the order of the triangles.
+/// both its sides. The outside gets in through holes and slits wider than about three voxels; what
+/// lies behind narrower ones counts as inside. Does not depend on the order of the triangles.
 std::vector<Corners> exposed_surface(std::vector<Corners> triangles);
 
 }  // namespace vicinity

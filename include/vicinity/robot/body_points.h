@@ -93,7 +93,8 @@ struct BodyPointOptions {
 
 /// Spreads points over the links' surfaces (all geometries that `robot` holds), as far as they can
 /// be reached from outside: motors, gears and inner walls of a link have no points and no share.
-/// Walls thinner than about 3 mm keep both sides.
+/// Walls thinner than about 3 mm keep both sides; what lies behind slits narrower than that, on
+/// links of up to 2 m, counts as inside.
 ///
 /// Points are evenly spread and irregular (blue noise): weighted sample elimination (Yuksel 2015)
 /// takes them from many even candidates, by distance in space, so that the two sides of a thin
