@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+// An arm: the meshes of its links, each at a pose that somebody else knows.
+import { Box3, Color, Group, Mesh, MeshLambertMaterial, SphereGeometry, type Raycaster } from "three";
+import type { Robot } from "../protocol/hello";
+import type { MeshAnswer } from "../protocol/shapes";
+import { meshGeometry } from "./mesh_geometry";
+
+export class Arm {
+  readonly group = new Group();
+  private readonly links: Group[];
+  private readonly material: MeshLambertMaterial;
+
+  /** @param opacity below one for an arm that is only shown beside another */
+  constructor(robot: Robot, probeRadius: number, opacity = 1) {
+    this.material = new MeshLambertMaterial({ transparent: opacity < 1, opacity });
+    this.links = robot.links.map((link) => {
+      const group = new Group();
+      group.name = link.name;
+      this.group.add(group);
+      return group;
+    });
+    // A probe has no mesh: its one point is drawn as a ball.
+    if (robot.probe) {
+      this.links[robot.toolLink]?.add(new Mesh(new SphereGeometry(probeRadius, 24, 16), this.material));
+    }
+  }
+
+  add(answer: MeshAnswer): void {
+    if (answer.triangles.length === 0) return;
+    this.links[answer.index]?.add(new Mesh(meshGeometry(answer.vertices, answer.triangles), this.material));
+  }
+
+  /** @param poses of all links in W, shape (links,7) */
+  move(poses: Float32Array): void {
+    this.links.forEach((link, n) => {
+      const at = 7 * n;
+      if (at + 7 > poses.length) return;
+      link.position.set(poses[at]!, poses[at + 1]!, poses[at + 2]!);
+      link.quaternion.set(poses[at + 3]!, poses[at + 4]!, poses[at + 5]!, poses[at + 6]!);
+    });
+  }
+
+  setColour(colour: string): void {
+    this.material.color = new Color(colour);
+  }
+
+  /** The nearest link on a ray. */
+  hit(ray: Raycaster): { at: number; link: string } | null {
+    const [first] = ray.intersectObject(this.group, true);
+    return first ? { at: first.distance, link: first.object.parent?.name ?? "" } : null;
+  }
+
+  box(): Box3 {
+    return new Box3().setFromObject(this.group);
+  }
+
+  dispose(): void {
+    this.group.removeFromParent();
+    this.group.traverse((node) => {
+      if (node instanceof Mesh) node.geometry.dispose();
+    });
+    this.material.dispose();
+  }
+}
