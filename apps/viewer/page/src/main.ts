@@ -32,7 +32,7 @@ import { holdCommand, jointsCommand } from "./protocol/command";
 import type { Hello } from "./protocol/hello";
 import { Session } from "./protocol/session";
 import type { Axis } from "./protocol/shapes";
-import type { BodyPoints, Snapshot } from "./protocol/snapshot";
+import { isSameMoment, type BodyPoints, type Snapshot } from "./protocol/snapshot";
 import { uploadRecording } from "./scene/mesh_upload";
 import { SceneEditor } from "./scene/scene_editor";
 import { reasonLine } from "./text/reason";
@@ -198,8 +198,7 @@ byId("overlay").append(
   notices.root,
   picking.card.root,
   picking.label,
-  reason,
-  legend.root,
+  element("div", { class: "bottom" }, reason, legend.root),
 );
 byId("strip").append(charts.chart.root);
 document.body.append(help.root);
@@ -219,6 +218,7 @@ session.on("trouble", (sentence) => notices.say(sentence, "bad"));
 session.on("hello", (hello) => replaceWorkplace(hello));
 session.on("points", (fresh) => {
   points = fresh;
+  drawn = null;
   workplace?.setPoints(fresh);
 });
 session.on("feel", (fresh) => {
@@ -229,6 +229,7 @@ session.on("feel", (fresh) => {
 });
 session.on("files", (files) => play.setFiles(files.recordings));
 let fresh: Snapshot | null = null;
+let drawn: Snapshot | null = null;
 session.on("snapshot", (snapshot) => {
   fresh = snapshot;
   charts.add(snapshot);
@@ -242,6 +243,7 @@ function replaceWorkplace(hello: Hello): void {
   made.slice.axis = old?.slice.axis ?? 1;
   made.slice.where = old?.slice.where ?? made.box.getCenter(new Vector3()).y;
   old?.dispose();
+  drawn = null;
   if (points) made.setPoints(points);
   stage.setFocus(made.box);
   if (!old) stage.look("iso");
@@ -304,9 +306,11 @@ function showSnapshot(snapshot: Snapshot, now: number): void {
     layers.showWhere(tool.y);
     void cut(1, tool.y);
   }
-  workplace.update(snapshot);
+  if (!isSameMoment(snapshot, drawn)) workplace.update(snapshot);
+  drawn = snapshot;
   handle.group.visible = !replay.hidesLiveArm;
   handle.move(tool, leader.isLeading ? leader.place : new Vector3().fromArray(snapshot.pulledTo));
+  if (leader.isLeading) stage.draw();
   if (now - panelsAt > 66) {
     panelsAt = now;
     drive.update(snapshot);

@@ -19,7 +19,7 @@ export function field(label: string, control: HTMLElement, hint?: string): HTMLE
   control.id ||= freshId();
   return element(
     "div",
-    { class: "field", title: hint },
+    { class: control.classList.contains("triple") ? "field stacked" : "field", title: hint },
     element("label", { for: control.id }, label),
     control,
   );

@@ -46,7 +46,7 @@ export class DrivePanel {
       this.readings.set(name, value);
       this.tool.append(element("dt", {}, name), value);
     }
-    const heaviness = element("output", {}, "2 N");
+    const heaviness = element("output", { class: "fixed" }, forceText(2));
     const half = slider("Drag that halves the pointer's way", { min: -2, max: 2, step: 0.05 }, Math.log10(2), (x) => {
       heaviness.textContent = forceText(10 ** x);
       actions.setHalfAt(10 ** x);

@@ -10,9 +10,9 @@ const sections: readonly [title: string, keys: readonly [keys: string, does: str
     "Look",
     [
       ["drag", "orbit; with the right button or Shift, move"],
-      ["wheel  + −", "nearer, farther"],
-      ["← → ↑ ↓", "turn the view"],
-      ["1 2 3 4", "view from a corner, front, side, top"],
+      ["wheel  +  −", "nearer, farther"],
+      ["←  →  ↑  ↓", "turn the view"],
+      ["1  2  3  4", "view from a corner, front, side, top"],
       ["click", "what is this voxel?"],
       ["M", "measure between two clicks"],
       ["H", "hide the chosen object; with Shift: show all"],
@@ -21,8 +21,8 @@ const sections: readonly [title: string, keys: readonly [keys: string, does: str
   [
     "Layers",
     [
-      ["X Y Z", "cut across this axis"],
-      ["[ ]", "move the slice by a voxel; with Shift by ten"],
+      ["X  Y  Z", "cut across this axis"],
+      ["[  ]", "move the slice by a voxel; with Shift by ten"],
       ["V", "slice on, off"],
       ["C", "cut away before the slice, or not"],
       ["G", "all shells on, off"],
@@ -32,9 +32,9 @@ const sections: readonly [title: string, keys: readonly [keys: string, does: str
     "Drive",
     [
       ["drag the ring", "lead the tool; hold X, Y or Z to keep to an axis, wheel for depth"],
-      ["W A S D", "lead it away, left, nearer, right"],
-      ["Q E", "down, up"],
-      ["I K  J L  U O", "tilt, turn and roll the tool"],
+      ["W  A  S  D", "lead it away, left, nearer, right"],
+      ["Q  E", "down, up"],
+      ["I  K  J  L  U  O", "tilt, turn and roll the tool"],
       ["Shift", "slowly"],
       ["Escape", "hold: stop where it is"],
       ["gamepad", "left stick and triggers lead, right stick turns; rumble is drag"],
@@ -44,7 +44,7 @@ const sections: readonly [title: string, keys: readonly [keys: string, does: str
     "Page",
     [
       ["Space", "play, pause a recording"],
-      [", .", "a frame back, forth"],
+      [ ",  .", "a frame back, forth"],
       ["T", "dark, light"],
       ["?", "these keys"],
     ],

@@ -68,7 +68,10 @@ export class ScenePanel {
           button("Save field", () =>
             void this.run(() => actions.saveField(this.draft.name.replace(/\.ya?ml$/, "") + ".vicinity")),
           ),
+          this.buildButton,
         ),
+        this.progressRow,
+        this.said,
       ),
       group(
         "Objects of the scene",
@@ -76,11 +79,8 @@ export class ScenePanel {
         element("p", { class: "note" }, "Drop an STL on the page to add it."),
         element("div", { class: "row" }, button("Add a mesh …", () => picker.click()), picker),
       ),
-      group("Field", element("div", { class: "row end" }, this.buildButton), this.progressRow, this.said),
       this.editorPlace,
     );
-    // The editor belongs below the list that it edits.
-    this.root.insertBefore(this.editorPlace, this.root.lastElementChild!.previousElementSibling);
     this.setDraft(this.draft);
   }
 

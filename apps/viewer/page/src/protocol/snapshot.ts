@@ -147,3 +147,14 @@ export function readSnapshot(message: Message): Snapshot {
     pointDrag: message.f32s(viscosity + 4 * p, 3 * p),
   };
 }
+
+function areEqual(a: ArrayLike<number>, b: ArrayLike<number>): boolean {
+  return a.length === b.length && Array.prototype.every.call(a, (x: number, n: number) => x === b[n]);
+}
+
+/** Whether nothing that is drawn differs: an arm at rest need not be drawn again. */
+export function isSameMoment(a: Snapshot, b: Snapshot | null): boolean {
+  if (!b || a.generation !== b.generation) return false;
+  const parts = ["q", "force", "pulledTo", "pointViscosity", "pointDrag"] as const;
+  return parts.every((part) => areEqual(a[part], b[part]));
+}

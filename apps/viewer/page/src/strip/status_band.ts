@@ -11,7 +11,7 @@ export interface BandColours {
   bad: string;
 }
 
-const heights = { good: 0.35, warn: 0.7, bad: 1 } as const;
+const heights = { good: 0.15, warn: 0.7, bad: 1 } as const;
 
 export function drawStatusBand(
   canvas: HTMLCanvasElement,
@@ -35,9 +35,9 @@ export function drawStatusBand(
     const status = statuses[n];
     if (status === null || status === undefined) continue;
     const look = statusClass(status);
-    const left = Math.max(0, x(times[n]!));
-    const right = x(times[n + 1] ?? Math.min(to, times[n]! + 0.05));
+    const left = Math.round(Math.max(0, x(times[n]!)));
+    const right = Math.round(x(times[n + 1] ?? Math.min(to, times[n]! + 0.05)));
     context.fillStyle = colours[look];
-    context.fillRect(left, height * (1 - heights[look]), Math.max(1, right - left + 0.5), height * heights[look]);
+    context.fillRect(left, height * (1 - heights[look]), Math.max(1, right - left), height * heights[look]);
   }
 }

@@ -130,7 +130,7 @@ export class StripChart {
           ...this.sizeOf(cell),
           legend: { show: false },
           cursor: { show: false },
-          padding: [6, 6, 0, 0],
+          padding: [6, 6, 7, 0],
           scales: {
             x: { time: false, auto: false },
             y: { range: (_plot, low, high) => [Math.min(0, low ?? 0), Math.max(1e-6, (high ?? 1) * 1.08)] },

@@ -3,7 +3,7 @@
 
 // The viscosity that each rank has now: one number, or the range where objects differ.
 import type { Field } from "../protocol/hello";
-import { threeDigits } from "./units";
+import { plainNumber } from "./units";
 
 /** Of rank 1, 2, ... @param viscosity by voxel code; a rank that no voxel has reads as "–" */
 export function rankViscosities(field: Field, viscosity: readonly number[]): string[] {
@@ -14,6 +14,6 @@ export function rankViscosities(field: Field, viscosity: readonly number[]): str
     });
     if (values.length === 0) return "–";
     const [low, high] = [Math.min(...values), Math.max(...values)];
-    return low === high ? threeDigits(low) : `${threeDigits(low)} – ${threeDigits(high)}`;
+    return low === high ? plainNumber(low) : `${plainNumber(low)} – ${plainNumber(high)}`;
   });
 }

@@ -12,12 +12,22 @@ export function threeDigits(x: number): string {
   return x.toFixed(Math.max(0, 2 - digits));
 }
 
+/** Four significant digits, without zeros behind: 32, 13.35. */
+export function plainNumber(x: number): string {
+  return Number.isFinite(x) ? String(Number(x.toPrecision(4))) : "–";
+}
+
 /** A length [m] in the unit in which it has few digits. */
 export function lengthText(metres: number): string {
   if (!Number.isFinite(metres)) return "–";
   const size = Math.abs(metres);
-  if (size < 1) return `${threeDigits(1000 * metres)} mm`;
+  if (size < 1) return `${plainMillimetres(1000 * metres)} mm`;
   return `${threeDigits(metres)} m`;
+}
+
+/** Tenths of a millimetre at most: nothing here is known more closely. */
+function plainMillimetres(x: number): string {
+  return Math.abs(x) < 1 ? threeDigits(x) : String(Number(x.toFixed(1)));
 }
 
 /** A force [N]; small ones in mN. */
@@ -28,7 +38,7 @@ export function forceText(newtons: number): string {
 }
 
 export function viscosityText(mu: number): string {
-  return `${threeDigits(mu)} N·s/m³`;
+  return `${plainNumber(mu)} N·s/m³`;
 }
 
 export function secondsText(seconds: number): string {

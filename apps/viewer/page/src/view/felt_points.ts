@@ -92,7 +92,7 @@ export class FeltPoints {
 
   setLook(look: Look): void {
     this.resting = new Color(look.restingPoint);
-    this.lines.material.color = new Color(look.accent);
+    this.lines.material.color = new Color(look.drag);
   }
 
   /** @param largest viscosity at the dark end of the scale; @param metresPerNewton of the lines */

@@ -7,6 +7,7 @@ export interface Look {
   object: string;
   edge: string;
   arm: string;
+  drag: string;
   ghost: string;
   accent: string;
   grid: string;
@@ -21,6 +22,7 @@ export const looks: Record<Theme, Look> = {
     object: "#8b95a1",
     edge: "#2c343e",
     arm: "#6ea3d8",
+    drag: "#ffffff",
     ghost: "#9fb0c2",
     accent: "#62adff",
     grid: "#33404e",
@@ -31,6 +33,7 @@ export const looks: Record<Theme, Look> = {
     object: "#c3cad2",
     edge: "#5d6875",
     arm: "#4b82ba",
+    drag: "#101418",
     ghost: "#7b8a9a",
     accent: "#0a5fbf",
     grid: "#c2cad4",

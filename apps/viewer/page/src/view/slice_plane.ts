@@ -54,6 +54,7 @@ export class SlicePlane {
   private cutsAway = true;
   private answer: SliceAnswer | null = null;
   private readonly geometry = new BufferGeometry();
+  private readonly outline = new BufferGeometry();
   private readonly material = new MeshBasicMaterial({ side: DoubleSide, transparent: true });
   private readonly ground = new MeshBasicMaterial({
     side: DoubleSide,
@@ -68,9 +69,9 @@ export class SlicePlane {
     this.material.alphaTest = 0.5;
     const painted = new Mesh(this.geometry, this.material);
     const ground = new Mesh(this.geometry, this.ground);
-    painted.renderOrder = 2;
-    ground.renderOrder = 3;
-    this.group.add(painted, ground, new LineLoop(this.geometry, this.frame));
+    ground.renderOrder = 2; // first, so that only empty space lets it through
+    painted.renderOrder = 3;
+    this.group.add(painted, ground, new LineLoop(this.outline, this.frame));
   }
 
   get shown(): boolean {
@@ -84,11 +85,11 @@ export class SlicePlane {
   /** The cut that is shown; its pixels come with `paint`. */
   place(answer: SliceAnswer): void {
     this.answer = answer;
-    this.geometry.setAttribute(
-      "position",
-      new BufferAttribute(corners(this.field, answer.axis, answer.where), 3),
-    );
-    this.geometry.computeBoundingSphere();
+    const places = new BufferAttribute(corners(this.field, answer.axis, answer.where), 3);
+    for (const geometry of [this.geometry, this.outline]) {
+      geometry.setAttribute("position", places);
+      geometry.computeBoundingSphere();
+    }
     // The last sample may stand for fewer voxels than the others: the texture reaches beyond.
     const across = ([0, 1, 2] as Axis[]).filter((n) => n !== answer.axis);
     const reach = (n: number, samples: number): number =>
@@ -139,6 +140,7 @@ export class SlicePlane {
   dispose(): void {
     this.group.removeFromParent();
     this.geometry.dispose();
+    this.outline.dispose();
     this.material.map?.dispose();
     for (const material of [this.material, this.ground, this.frame]) material.dispose();
   }

@@ -15,10 +15,13 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
+// No frame for so long: nothing has moved, and the pause is no frame's time.
+const restAfter_ms = 1000;
+
 export type ViewDirection = "iso" | "front" | "side" | "top";
 
 const directions: Record<ViewDirection, Vector3> = {
-  iso: new Vector3(-0.62, -1, 0.72),
+  iso: new Vector3(-0.42, -1, 0.5),
   front: new Vector3(0, -1, 0),
   side: new Vector3(1, 0, 0),
   top: new Vector3(0, -0.001, 1), // not straight down: up would have no direction
@@ -30,10 +33,11 @@ export class Stage {
   readonly renderer: WebGLRenderer;
   readonly orbit: OrbitControls;
 
-  /** Time from asking for a frame to its last call, of the latest frames [ms]. */
+  /** Time between one frame and the next, while frames follow each other [ms]. */
   readonly frameTimes: number[] = [];
 
   private wanted = false;
+  private lastFrame = 0;
   private focus = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
   private readonly beforeFrame: (() => void)[] = [];
   private prepareHalf: ((half: 0 | 1) => void) | null = null;
@@ -63,12 +67,10 @@ export class Stage {
     this.wanted = true;
     requestAnimationFrame(() => {
       this.wanted = false;
-      const start = performance.now();
       for (const prepare of this.beforeFrame) prepare();
       if (this.prepareHalf) this.renderHalves(this.prepareHalf);
       else this.renderer.render(this.scene, this.camera);
-      this.frameTimes.push(performance.now() - start);
-      if (this.frameTimes.length > 240) this.frameTimes.shift();
+      this.time();
     });
   }
 
@@ -92,7 +94,7 @@ export class Stage {
     const radius = Math.max(box.getSize(new Vector3()).length() / 2, 1e-3);
     const half = (this.camera.fov * Math.PI) / 360;
     const narrow = Math.min(1, this.camera.aspect);
-    const distance = (0.92 * radius) / Math.sin(Math.atan(Math.tan(half) * narrow));
+    const distance = (0.78 * radius) / Math.sin(Math.atan(Math.tan(half) * narrow));
     this.orbit.target.copy(centre);
     this.camera.position.copy(directions[from]).normalize().multiplyScalar(distance).add(centre);
     this.orbit.update();
@@ -136,6 +138,13 @@ export class Stage {
       x: (2 * (across - left)) / width - 1,
       y: 1 - (2 * (event.clientY - box.top)) / box.height,
     };
+  }
+
+  private time(): void {
+    const now = performance.now();
+    if (now - this.lastFrame < restAfter_ms) this.frameTimes.push(now - this.lastFrame);
+    if (this.frameTimes.length > 240) this.frameTimes.shift();
+    this.lastFrame = now;
   }
 
   private renderHalves(prepare: (half: 0 | 1) => void): void {

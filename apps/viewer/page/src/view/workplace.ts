@@ -172,7 +172,7 @@ export class Workplace {
     this.slice.setLook(look, theme);
     this.arm.setColour(look.arm);
     this.points?.setLook(look);
-    this.arrow.setColour(look.accent);
+    this.arrow.setColour(look.drag);
     this.stage.draw();
   }
 

@@ -11,7 +11,7 @@ const felt = { point: 12, link: 1, object: 1, kind: 1, rank: 2, share: 0.4, dist
 
 test("a reason names link, object, rank, distance and time", () => {
   expect(reasonLine(felt, field, robot)).toBe(
-    "link_5 → vessel, rank 2, at least 31.0 mm, 400 ms to contact",
+    "link_5 → vessel, rank 2, at least 31 mm, 400 ms to contact",
   );
 });
 
@@ -31,5 +31,5 @@ test("touching has no distance, and an unknown time is left out", () => {
 
 test("a recorded reason reads like a live one", () => {
   const reason = { link: "link_5", object: "vessel", rank: 2, distanceMm: 31 };
-  expect(recordedReasonLine(reason)).toBe("link_5 → vessel, rank 2, at least 31.0 mm");
+  expect(recordedReasonLine(reason)).toBe("link_5 → vessel, rank 2, at least 31 mm");
 });
