@@ -8,7 +8,8 @@ import "./style/tokens.css";
 import "./style/layout.css";
 import "./style/controls.css";
 import "./style/panels.css";
-import { Box3, Vector3 } from "three";
+import { Vector3 } from "three";
+import { readAddress } from "./app/address";
 import { Charts } from "./app/charts";
 import { Frame } from "./app/frame";
 import { Keys } from "./app/keys";
@@ -46,13 +47,14 @@ const address = new URL("ws", location.href);
 address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
 const session = new Session(address.href, new URLSearchParams(location.search).get("token"));
 
+const asked = readAddress(location.search);
 const canvas = byId<HTMLCanvasElement>("canvas");
 const stage = new Stage(canvas);
 const shown: Shown = {
   shells: new Set(),
   opacity: 0.16,
-  slice: true,
-  cutAway: true,
+  slice: asked.slice !== "off",
+  cutAway: asked.cutAway ?? true,
   colouring: "rank",
   objects: true,
   arm: true,
@@ -62,8 +64,8 @@ const shown: Shown = {
 };
 let workplace: Workplace | null = null;
 let points: BodyPoints | null = null;
-let theme: Theme = currentTheme();
-let sliceIsPlaced = false; // at the tool, once it is known where that is
+let theme: Theme = asked.theme ?? currentTheme();
+let sliceIsPlaced = false; // where the address says, or at the tool, once it is known where that is
 const felt = (): number => session.snapshot?.felt ?? 0;
 
 // What is in the view beside the workplace.
@@ -101,7 +103,11 @@ const drive = new DrivePanel({
   setHalfAt: (newtons) => (mouse.halfAt = jog.halfAt = newtons),
 });
 const feel = new FeelPanel((change) => session.changeFeel(change));
-const replay = new ReplayView(session, stage, () => play.update());
+let replayIsNew = false;
+const replay = new ReplayView(session, stage, () => {
+  replayIsNew = true;
+  play.update();
+});
 const play: PlayPanel = new PlayPanel(replay.player, {
   open: (slot, name) => void replay.open(slot, name).catch((error: unknown) => session.fail(error)),
   close: (slot) => replay.close(slot),
@@ -207,6 +213,7 @@ stage.onFrame(() => {
   handle.face(stage.camera, stage.camera.fov);
 });
 setTheme(theme);
+if (!asked.panels) for (const side of ["left", "right"] as const) frame.open(side, false);
 
 // What the server says.
 session.on("state", (state) => {
@@ -246,7 +253,13 @@ function replaceWorkplace(hello: Hello): void {
   drawn = null;
   if (points) made.setPoints(points);
   stage.setFocus(made.box);
-  if (!old) stage.look("iso");
+  if (!old) {
+    stage.look(asked.view ?? "iso");
+    const ranks = Array.from({ length: hello.field.ranks }, (_, n) => n + 1);
+    for (const rank of asked.shells === "all" ? ranks : asked.shells) {
+      if (rank <= hello.field.ranks) shown.shells.add(rank);
+    }
+  }
   leader.mostAhead = 0.1 * made.box.getSize(new Vector3()).length();
   frame.showHello(hello);
   layers.setField(hello.field);
@@ -292,9 +305,21 @@ function step(now: number): void {
   const snapshot = fresh;
   fresh = null;
   if (snapshot) showSnapshot(snapshot, now);
-  const recorded = replay.charts;
-  if (recorded) charts.showRecorded(replay.player, recorded);
+  if (replayIsNew) showRecorded();
   requestAnimationFrame(step);
+}
+
+function showRecorded(): void {
+  replayIsNew = false;
+  const columns = replay.charts;
+  if (!columns) return;
+  charts.showRecorded(replay.player, columns);
+  sayReason(replay.reasonLine);
+}
+
+function sayReason(line: string | null): void {
+  reason.textContent = line ?? "nothing is felt";
+  reason.classList.toggle("none", line === null);
 }
 
 function showSnapshot(snapshot: Snapshot, now: number): void {
@@ -303,8 +328,8 @@ function showSnapshot(snapshot: Snapshot, now: number): void {
   const tool = new Vector3(x, y, z);
   if (!sliceIsPlaced) {
     sliceIsPlaced = true;
-    layers.showWhere(tool.y);
-    void cut(1, tool.y);
+    const slice = typeof asked.slice === "object" ? asked.slice : null;
+    layers.place(slice?.axis ?? 1, slice?.where ?? tool.y);
   }
   if (!isSameMoment(snapshot, drawn)) workplace.update(snapshot);
   drawn = snapshot;
@@ -315,9 +340,7 @@ function showSnapshot(snapshot: Snapshot, now: number): void {
     panelsAt = now;
     drive.update(snapshot);
     const { field, robot } = workplace.hello;
-    const line = reasonLine(snapshot.reason, field, robot);
-    reason.textContent = line ?? "nothing is felt";
-    reason.classList.toggle("none", line === null);
+    if (!replay.charts) sayReason(reasonLine(snapshot.reason, field, robot));
   }
   if (!replay.charts) charts.showLive(snapshot, now, stage.frameTimes.at(-1) ?? 0);
 }
@@ -378,13 +401,14 @@ window.addEventListener("drop", (event) => {
 });
 document.addEventListener("visibilitychange", () => session.setRate(document.hidden ? 0 : 60));
 
-// For scripts and a curious person: what the page last heard, and how long its frames took.
+// For scripts and a curious person: what the page last heard, how long its frames took [ms], and
+// where on the page the tool is [px].
 Object.assign(window, {
   vicinity: {
     hello: () => session.hello,
     snapshot: () => session.snapshot,
     frameTimes: () => [...stage.frameTimes],
-    look: (from: ViewDirection, box?: Box3) => stage.look(from, box),
+    toolOnPage: () => stage.onPage(handle.place),
   },
 });
 

@@ -3,13 +3,14 @@
 
 // Recordings in the view: one arm each, side by side where there are two.
 import { Player, type Slot } from "../play/player";
-import { posesAt } from "../play/moment";
+import { indexAt, posesAt, reasonAt } from "../play/moment";
 import { recordedColumns } from "../play/recorded_columns";
 import { jsonCommand } from "../protocol/command";
 import { toServer } from "../protocol/message";
 import { readRecording } from "../protocol/recording";
 import type { Session } from "../protocol/session";
 import type { Columns } from "../strip/rolling_record";
+import { recordedReasonLine } from "../text/reason";
 import { Arm } from "../view/arm";
 import { looks, type Theme } from "../view/look";
 import type { Stage } from "../view/stage";
@@ -82,6 +83,13 @@ export class ReplayView {
     const [left, right] = this.columns;
     if (left) return { own: left, other: right };
     return right ? { own: right, other: null } : null;
+  }
+
+  /** What was felt most in the first recording at this moment; null: nothing. */
+  get reasonLine(): string | null {
+    const recording = this.player.slots[0] ?? this.player.slots[1];
+    if (!recording) return null;
+    return recordedReasonLine(reasonAt(recording, indexAt(recording.t, this.player.time)));
   }
 
   private makeArm(slot: Slot): void {

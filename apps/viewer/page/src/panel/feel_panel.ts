@@ -103,9 +103,10 @@ export class FeelPanel {
     this.listValues();
   }
 
-  /** The object that the editor is on: the chosen one, or the first as an example of all. */
+  /** The object that the editor is on: the chosen one, or the one with most ranks for all of them. */
   private codingShown(): { name: string; coding: number[]; skin: number } | null {
-    const name = this.object.value || this.hello?.field.objects[0]?.name;
+    const objects = [...(this.hello?.field.objects ?? [])].sort((a, b) => b.q - a.q);
+    const name = this.object.value || objects[0]?.name;
     const found = name === undefined ? undefined : this.feel?.codings.get(name);
     return name !== undefined && found ? { name, ...found } : null;
   }

@@ -116,6 +116,12 @@ export class LayersPanel {
     this.cut((this.range.lo + this.range.hi) / 2);
   }
 
+  /** Cuts there, or as near as the workspace allows. */
+  place(axis: Axis, where: number): void {
+    this.showAxis(axis);
+    this.cut(where);
+  }
+
   /** Moves the slice by whole voxels. */
   step(voxels: number): void {
     this.cut(this.where.valueAsNumber + voxels * this.range.h);

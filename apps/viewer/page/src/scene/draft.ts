@@ -115,6 +115,19 @@ export function place(object: SceneObject, { xyz, quaternion, scale }: Placement
   else object.scale = tidy(scale);
 }
 
+/** Whether two objects are the same thing in the same place, however their poses are written. */
+export function standAlike(a: SceneObject, b: SceneObject): boolean {
+  const [own, other] = [placementOf(a), placementOf(b)];
+  const numbersOf = ({ xyz, scale }: Placement): number[] => [...xyz, scale];
+  const turned = own.quaternion.reduce((sum, x, n) => sum + x * other.quaternion[n]!, 0);
+  return (
+    a.mesh === b.mesh &&
+    a.units === b.units &&
+    numbersOf(own).every((x, n) => Math.abs(x - numbersOf(other)[n]!) < 1e-9) &&
+    Math.abs(turned) > 1 - 1e-12
+  );
+}
+
 /** "32, 25 20" as a list, a name as a name; null where it is neither. */
 export function parseCoding(text: string, presets: readonly string[]): string | number[] | null {
   const trimmed = text.trim();

@@ -14,7 +14,7 @@ import type { Session } from "../protocol/session";
 import { bytesText, lengthUnits, metresPer, secondsText, type LengthUnit } from "../text/units";
 import { DraftPreview, matrixOf } from "../view/draft_preview";
 import type { Workplace } from "../view/workplace";
-import { addMesh, nameOf, objectsOf, place, placementOf, type Draft, type SceneObject } from "./draft";
+import { addMesh, nameOf, objectsOf, place, placementOf, standAlike, type Draft, type SceneObject } from "./draft";
 import { uploadMesh } from "./mesh_upload";
 
 function copyOf(draft: Draft): Draft {
@@ -31,7 +31,7 @@ export class SceneEditor {
   private readonly uploads = new Map<string, Promise<BufferGeometry | null>>();
   private workplace: Workplace | null = null;
   /** Objects as they were built: what stands elsewhere is previewed. */
-  private built = new Map<string, string>();
+  private built = new Map<string, SceneObject>();
 
   constructor(
     private readonly session: Session,
@@ -56,7 +56,7 @@ export class SceneEditor {
     this.workplace = workplace;
     this.panel.setCodings(hello.codings);
     this.built = new Map(
-      hello.scene ? objectsOf(copyOf(hello.scene)).map((object) => [nameOf(object), JSON.stringify(object)]) : [],
+      hello.scene ? objectsOf(copyOf(hello.scene)).map((object) => [nameOf(object), object]) : [],
     );
     const isFirst = objectsOf(this.panel.draft).length === 0;
     if (hello.scene && isFirst) this.panel.setDraft(copyOf(hello.scene));
@@ -99,8 +99,8 @@ export class SceneEditor {
   }
 
   private async showObject(object: SceneObject): Promise<void> {
-    const isBuilt = this.built.get(nameOf(object)) === JSON.stringify(object);
-    if (isBuilt && object !== this.panel.chosenObject) {
+    const was = this.built.get(nameOf(object));
+    if (was && standAlike(was, object) && object !== this.panel.chosenObject) {
       this.preview.remove(object);
       return;
     }
@@ -116,9 +116,9 @@ export class SceneEditor {
     const was = this.built.get(nameOf(object));
     const index = this.workplace?.hello.field.objects.findIndex(({ name }) => name === nameOf(object)) ?? -1;
     const mesh = this.workplace?.objects.meshOf(index);
-    if (was === undefined || !mesh) return;
+    if (!was || !mesh) return;
     const key = this.preview.meshOf(object);
-    const own = matrixOf(placementOf(JSON.parse(was) as SceneObject)).invert();
+    const own = matrixOf(placementOf(was)).invert();
     const geometry = key?.geometry ?? mesh.geometry.clone().applyMatrix4(new Matrix4().copy(own));
     this.preview.show(object, geometry, placementOf(object), 1);
   }

@@ -147,6 +147,14 @@ export class Stage {
     this.lastFrame = now;
   }
 
+  /** Where on the page a point of the workplace is seen [px]; in the left half where there are two. */
+  onPage(point: Vector3): { x: number; y: number } {
+    const box = this.canvas.getBoundingClientRect();
+    const width = this.prepareHalf ? box.width / 2 : box.width;
+    const at = point.clone().project(this.camera);
+    return { x: box.left + (width * (1 + at.x)) / 2, y: box.top + (box.height * (1 - at.y)) / 2 };
+  }
+
   private renderHalves(prepare: (half: 0 | 1) => void): void {
     const width = Math.max(1, this.canvas.clientWidth) / 2;
     const height = Math.max(1, this.canvas.clientHeight);

@@ -13,6 +13,7 @@ import {
   place,
   placementOf,
   settingOf,
+  standAlike,
   toRpy,
   type Draft,
 } from "../../src/scene/draft";
@@ -58,6 +59,15 @@ test("a placement reads rpy and quaternion alike", () => {
   expect(turned.quaternion[2]).toBeCloseTo(Math.SQRT1_2, 12);
   expect(placementOf({ pose: { quaternion: [0, 0, "1", 1] } }).quaternion).toEqual([0, 0, 0, 1]);
   expect(placementOf({})).toEqual({ xyz: [0, 0, 0], quaternion: [0, 0, 0, 1], scale: 1 });
+});
+
+test("the same place is known by rpy and by quaternion, and a moved or rescaled thing is not", () => {
+  const one = { mesh: "a.stl", units: "mm", pose: { xyz: [1, 2, 3], rpy: [0, 0, 1] } };
+  const half = [0, 0, -Math.sin(0.5), -Math.cos(0.5)];
+  expect(standAlike(one, { ...one, pose: { xyz: [1, 2, 3], quaternion: half } })).toBe(true);
+  expect(standAlike(one, { ...one, pose: { xyz: [1, 2, 3.001], rpy: [0, 0, 1] } })).toBe(false);
+  expect(standAlike(one, { ...one, pose: { xyz: [1, 2, 3], rpy: [0, 0, 1.01] } })).toBe(false);
+  expect(standAlike(one, { ...one, units: "in" })).toBe(false);
 });
 
 test("a coding is a name or a list of viscosities", () => {
