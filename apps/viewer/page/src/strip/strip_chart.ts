@@ -50,7 +50,7 @@ export class StripChart {
       const value = element("span", { class: "value", "data-reading": quantity.name }, "–");
       const cell = element(
         "figure",
-        { class: "chart", title: quantity.title },
+        { class: "chart", title: `${quantity.title} [${quantity.unit}]` },
         element("figcaption", {}, element("span", {}, quantity.name), value, element("span", { class: "unit" }, quantity.unit)),
       );
       this.values.push(value);
