@@ -98,7 +98,7 @@ export class ReplayView {
     const { workplace } = this;
     const recording = this.player.slots[slot];
     if (!workplace || !recording || recording.frames.length === 0) return;
-    const arm = new Arm(workplace.hello.robot, workplace.probeRadius);
+    const arm = new Arm(workplace.hello.robot);
     arm.setColour(looks[this.theme].arm);
     workplace.root.add(arm.group);
     this.arms[slot] = arm;

@@ -12,6 +12,9 @@ export class Refusal extends Error {}
 
 export type ConnectionState = "connecting" | "open" | "lost";
 
+/** The server lets 64 commands of a page wait; what is asked beyond these is asked later. */
+const mostWaiting = 32;
+
 interface Waiting {
   answer: (message: Message) => void;
   refuse: (why: Error) => void;
@@ -37,6 +40,7 @@ function sentenceOf(message: Message): string {
 export class Connection {
   private socket: WebSocket | null = null;
   private readonly waiting = new Map<number, Waiting>();
+  private backlog: { command: ArrayBuffer; waiting: Waiting }[] = [];
   private readonly listeners = new Map<number, ((message: Message) => void)[]>();
   private lastId = 0;
   private pause = 500; // [ms]
@@ -97,9 +101,18 @@ export class Connection {
       waiting.refuse(new Refusal("the server is not there"));
       return;
     }
-    this.lastId = (this.lastId % 0xffffffff) + 1;
-    this.waiting.set(this.lastId, waiting);
-    this.socket.send(withId(command, this.lastId));
+    this.backlog.push({ command, waiting });
+    this.sendBacklog();
+  }
+
+  private sendBacklog(): void {
+    while (this.waiting.size < mostWaiting) {
+      const next = this.backlog.shift();
+      if (!next) return;
+      this.lastId = (this.lastId % 0xffffffff) + 1;
+      this.waiting.set(this.lastId, next.waiting);
+      this.socket?.send(withId(next.command, this.lastId));
+    }
   }
 
   private receive(data: unknown): void {
@@ -117,6 +130,7 @@ export class Connection {
     if (waiting) {
       const refused = message.type === fromServer.error;
       if (refused || waiting.isLast(message)) this.waiting.delete(message.id);
+      this.sendBacklog();
       if (refused) waiting.refuse(new Refusal(sentenceOf(message)));
       else waiting.answer(message);
       return;
@@ -127,8 +141,10 @@ export class Connection {
 
   private lose(): void {
     this.onState("lost");
-    for (const { refuse } of this.waiting.values()) refuse(new Refusal("the server went away"));
+    const unanswered = [...this.waiting.values(), ...this.backlog.map(({ waiting }) => waiting)];
     this.waiting.clear();
+    this.backlog = [];
+    for (const { refuse } of unanswered) refuse(new Refusal("the server went away"));
     setTimeout(() => this.open(), this.pause);
     this.pause = Math.min(8000, 1.6 * this.pause);
   }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // An arm: the meshes of its links, each at a pose that somebody else knows.
-import { Box3, Color, Group, Mesh, MeshLambertMaterial, SphereGeometry, type Raycaster } from "three";
+import { Color, Group, Mesh, MeshLambertMaterial } from "three";
 import type { Robot } from "../protocol/hello";
 import type { MeshAnswer } from "../protocol/shapes";
 import { meshGeometry } from "./mesh_geometry";
@@ -10,21 +10,15 @@ import { meshGeometry } from "./mesh_geometry";
 export class Arm {
   readonly group = new Group();
   private readonly links: Group[];
-  private readonly material: MeshLambertMaterial;
+  private readonly material = new MeshLambertMaterial();
 
-  /** @param opacity below one for an arm that is only shown beside another */
-  constructor(robot: Robot, probeRadius: number, opacity = 1) {
-    this.material = new MeshLambertMaterial({ transparent: opacity < 1, opacity });
+  constructor(robot: Robot) {
     this.links = robot.links.map((link) => {
       const group = new Group();
       group.name = link.name;
       this.group.add(group);
       return group;
     });
-    // A probe has no mesh: its one point is drawn as a ball.
-    if (robot.probe) {
-      this.links[robot.toolLink]?.add(new Mesh(new SphereGeometry(probeRadius, 24, 16), this.material));
-    }
   }
 
   add(answer: MeshAnswer): void {
@@ -44,16 +38,6 @@ export class Arm {
 
   setColour(colour: string): void {
     this.material.color = new Color(colour);
-  }
-
-  /** The nearest link on a ray. */
-  hit(ray: Raycaster): { at: number; link: string } | null {
-    const [first] = ray.intersectObject(this.group, true);
-    return first ? { at: first.distance, link: first.object.parent?.name ?? "" } : null;
-  }
-
-  box(): Box3 {
-    return new Box3().setFromObject(this.group);
   }
 
   dispose(): void {

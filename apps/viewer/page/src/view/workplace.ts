@@ -44,8 +44,6 @@ export class Workplace {
   readonly arm: Arm;
   /** All of the workspace [m]. */
   readonly box: Box3;
-  /** Of the ball that stands for a probe [m]. */
-  readonly probeRadius: number;
   private points: FeltPoints | null = null;
   private readonly arrow: ForceArrow;
   private feel: Feel;
@@ -74,8 +72,7 @@ export class Workplace {
     this.slice = new SlicePlane(field);
     this.objects = new ObjectMeshes(this.slice.clip);
     this.shells = new LayerShells(field, this.hidden, this.slice.clip);
-    this.probeRadius = size / 120;
-    this.arm = new Arm(robot, this.probeRadius);
+    this.arm = new Arm(robot);
     this.arrow = new ForceArrow(size / 550);
     this.root.add(
       this.objects.group,
