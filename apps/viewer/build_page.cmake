@@ -48,7 +48,7 @@ if(built)
     file(SIZE ${PAGE}/dist/${file} size)
     # The assembler takes the bytes as they are.
     string(APPEND blobs "__asm__(\".pushsection .rodata\\n.balign 16\\npage_file_${n}:\\n\"\n"
-                        "        \".incbin \\\"${PAGE}/dist/${file}\X);\n"
+                        "        \".incbin \\\"${PAGE}/dist/${file}\\\"\\n.popsection\\n\");\n"
                         "extern \"C\" const char page_file_${n}[];\n")
     string(APPEND table "    {\"/${file}\", {page_file_${n}, ${size}}},\n")
     math(EXPR n "${n} + 1")

@@ -42,7 +42,7 @@ class Served {
 
   std::uint16_t port() const noexcept { return server_->port(); }
   viewer::WebServer& server() noexcept { return *server_; }
-  viewer::Viewer& viewer() noexcept { return *viewer_; }
+  viewer::Viewer& site() noexcept { return *viewer_; }
   const ViscosityField& field() const noexcept { return field_; }
   const RobotModel& robot() const noexcept { return robot_; }
   const ScratchFolder& folder() const noexcept { return folder_; }

@@ -66,11 +66,11 @@ TEST(Gate, AnAddressThatOthersReachNeedsAToken) {
   Served served;
   viewer::WebOptions options;
   options.address = "0.0.0.0";
-  EXPECT_THROW(viewer::WebServer(options, served.viewer()), Error);
+  EXPECT_THROW(viewer::WebServer(options, served.site()), Error);
   options.token = "t";
-  EXPECT_NO_THROW(viewer::WebServer(options, served.viewer()));
+  EXPECT_NO_THROW(viewer::WebServer(options, served.site()));
   options.address = "not an address";
-  EXPECT_THROW(viewer::WebServer(options, served.viewer()), Error);
+  EXPECT_THROW(viewer::WebServer(options, served.site()), Error);
 }
 
 TEST(Web, NoPathLeadsOutOfTheFolder) {
