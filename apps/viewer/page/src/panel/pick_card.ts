@@ -23,7 +23,7 @@ export function readPicked(message: Message): Picked {
   const json = new Json(message.json(), "PICK");
   return {
     point: json.at("point").numbers(3),
-    voxel: json.at("voxel").numbers(3),
+    voxel: json.at("voxel").isNull ? [] : json.at("voxel").numbers(3), // none outside the workspace
     kind: json.at("kind").text(),
     object: json.at("object").textOr(null),
     rank: json.at("rank").numberOr(0),
@@ -42,7 +42,7 @@ export function pickedRows(picked: Picked): [string, string][] {
   if (picked.distance !== null) rows.push(["distance", lengthText(picked.distance)]);
   else if (picked.atLeast !== null) rows.push(["distance", `at least ${lengthText(picked.atLeast)}`]);
   rows.push(["point", `${picked.point.map((x) => x.toFixed(3)).join(", ")} m`]);
-  rows.push(["voxel", picked.voxel.join(", ")]);
+  rows.push(["voxel", picked.voxel.join(", ") || "outside the workspace"]);
   return rows;
 }
 

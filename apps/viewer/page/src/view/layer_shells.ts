@@ -6,9 +6,8 @@
 // that what lies behind shines through once for each rank, in the same order from everywhere.
 import {
   BufferAttribute,
+  BufferGeometry,
   Group,
-  InstancedBufferAttribute,
-  InstancedBufferGeometry,
   IntType,
   Mesh,
   Vector3,
@@ -30,15 +29,22 @@ interface Shell {
 
 const skinColour = [0.6, 0.63, 0.67] as const;
 
-function geometryOf(quads: Uint32Array): InstancedBufferGeometry {
-  const geometry = new InstancedBufferGeometry();
-  const corners = new Float32Array([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0]);
-  geometry.setAttribute("position", new BufferAttribute(corners, 3));
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  const words = new InstancedBufferAttribute(quads, 4);
-  words.gpuType = IntType;
-  geometry.setAttribute("quad", words);
-  geometry.instanceCount = quads.length / 4;
+/** Four corners to a quad, which the shader tells apart by their number. (Instances of one quad would
+ * need no copies, but graphics cards, and software renderers more so, are slow at tiny instances.) */
+function geometryOf(quads: Uint32Array): BufferGeometry {
+  const count = Math.floor(quads.length / 4);
+  const words = new Uint32Array(16 * count);
+  const corners = new Uint32Array(6 * count);
+  for (let n = 0; n < count; ++n) {
+    for (let word = 0; word < 16; ++word) words[16 * n + word] = quads[4 * n + (word & 3)]!;
+    const first = 4 * n;
+    corners.set([first, first + 1, first + 2, first, first + 2, first + 3], 6 * n);
+  }
+  const geometry = new BufferGeometry();
+  const attribute = new BufferAttribute(words, 4);
+  attribute.gpuType = IntType;
+  geometry.setAttribute("quad", attribute);
+  geometry.setIndex(new BufferAttribute(corners, 1));
   return geometry;
 }
 
@@ -121,7 +127,7 @@ export class LayerShells {
     this.group.removeFromParent();
     this.group.traverse((node) => {
       if (!(node instanceof Mesh)) return;
-      (node.geometry as InstancedBufferGeometry).dispose();
+      (node.geometry as BufferGeometry).dispose();
       (node.material as ShaderMaterial).dispose();
     });
   }

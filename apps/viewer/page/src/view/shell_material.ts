@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Draws quads straight from the wire's words: the graphics card makes corners of them, so that a
-// large field is on screen as soon as it has come.
+// Draws quads from the wire's words: the graphics card makes corners of them, so that a large field is
+// on screen as soon as it has come.
 import {
   Color,
   DataTexture,
@@ -24,6 +24,9 @@ const vertexShader = /* glsl */ `
   #include <clipping_planes_pars_vertex>
 
   void main() {
+    // Corners go round the face: 0 (0,0), 1 (1,0), 2 (1,1), 3 (0,1).
+    int place = gl_VertexID & 3;
+    float u = place == 1 || place == 2 ? 1.0 : 0.0, v = place >= 2 ? 1.0 : 0.0;
     uint face = (quad.z >> 16u) & 0xffu;
     uint object = quad.w & 0xffffu;
     vec3 corner = vec3(float(quad.x & 0xffffu), float(quad.x >> 16u), float(quad.y & 0xffffu));
@@ -31,9 +34,9 @@ const vertexShader = /* glsl */ `
     float side = float(face & 1u);
     vec3 normal = vec3(0.0);
     uint axis = face >> 1u;
-    if (axis == 0u) { corner += vec3(side, position.x * a, position.y * b); normal.x = 1.0; }
-    else if (axis == 1u) { corner += vec3(position.x * a, side, position.y * b); normal.y = 1.0; }
-    else { corner += vec3(position.x * a, position.y * b, side); normal.z = 1.0; }
+    if (axis == 0u) { corner += vec3(side, u * a, v * b); normal.x = 1.0; }
+    else if (axis == 1u) { corner += vec3(u * a, side, v * b); normal.y = 1.0; }
+    else { corner += vec3(u * a, v * b, side); normal.z = 1.0; }
     normal *= 2.0 * side - 1.0;
     vLight = 0.80 + 0.20 * dot(normal, normalize(vec3(-0.35, -0.55, 0.75)));
     vec4 mvPosition = viewMatrix * vec4(workspace + cell * corner, 1.0);

@@ -48,7 +48,7 @@ export class Workplace {
   private readonly arrow: ForceArrow;
   private feel: Feel;
   private theme: Theme = "dark";
-  private asked = new Set<number>();
+  private readonly asked = new Map<number, Promise<void>>(); // shells, by rank
   private wantedSlice: { axis: Axis; where: number } | null = null;
   private sliceIsUnderWay = false;
   private disposed = false;
@@ -90,8 +90,8 @@ export class Workplace {
     const links = robot.links.flatMap((link, n) => (link.mesh ? [this.loadMesh("link", n)] : []));
     const slice = this.cut(this.slice.axis, this.slice.where);
     const meshes = await Promise.all(field.objects.map((_, n) => this.loadMesh("object", n)));
-    const skin = meshes.every((hasMesh) => hasMesh) ? [] : [this.loadShell(0)];
-    const ranks = [...this.shown.shells].map((rank) => this.loadShell(rank));
+    const skin = meshes.every((hasMesh) => hasMesh) ? [] : [this.shell(0)];
+    const ranks = [...this.shown.shells].map((rank) => this.shell(rank));
     await Promise.all([...links, ...skin, ...ranks, slice]);
   }
 
@@ -129,7 +129,7 @@ export class Workplace {
   apply(): void {
     const { shown } = this;
     for (const rank of shown.shells) {
-      if (!this.asked.has(rank)) this.loadShell(rank).catch((error: unknown) => this.onTrouble(error));
+      this.shell(rank).catch((error: unknown) => this.onTrouble(error));
     }
     for (let rank = 1; rank <= this.hello.field.ranks; ++rank) {
       this.shells.show(rank, shown.shells.has(rank));
@@ -224,8 +224,14 @@ export class Workplace {
     return true;
   }
 
+  /** A shell is asked for once. */
+  private shell(rank: number): Promise<void> {
+    const asked = this.asked.get(rank) ?? this.loadShell(rank);
+    this.asked.set(rank, asked);
+    return asked;
+  }
+
   private async loadShell(rank: number): Promise<void> {
-    this.asked.add(rank);
     const messages = await this.connection.askForParts(shellCommand(rank), (message) => {
       if (message.type !== fromServer.shell) return true;
       const part = readShellPart(message);
