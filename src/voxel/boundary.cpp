@@ -35,6 +35,7 @@
 #include <vector>
 
 #include "slabbed_mesh.h"
+#include "surface_voxels.h"
 
 namespace vicinity {
 namespace {
@@ -51,7 +52,7 @@ struct Point {
 class TriangleTracer {
  public:
   TriangleTracer(VoxelSet& voxels, double reach)
-      : voxels_(voxels), slack_(rounding * std::max(reach, 1.0)) {}
+      : voxels_(voxels), box_(voxels.box()), slack_(rounding * std::max(reach, 1.0)) {}
 
   // Marks the triangle's voxels in layers k_begin <= k < k_end.
   void trace(const std::array<Vec3, 3>& corners, std::int32_t k_begin, std::int32_t k_end) {
@@ -59,8 +60,13 @@ class TriangleTracer {
     const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
     lo_ = {floor_index(low.x()), floor_index(low.y()), floor_index(low.z())};
     hi_ = {floor_index(high.x()), floor_index(high.y()), floor_index(high.z())};
-    k_begin = std::max(k_begin, lo_.k);
-    k_end = std::min(k_end, hi_.k + 1);
+    // Layers and rows beyond the box are left out before they cost anything: a floor is far larger
+    // than the tiles it is voxelised in.
+    first_row_ = std::max(lo_.j, box_.lo.j);
+    last_row_ = std::min(hi_.j, box_.hi.j - 1);
+    if (first_row_ > last_row_) return;
+    k_begin = std::max({k_begin, lo_.k, box_.lo.k});
+    k_end = std::min({k_end, hi_.k + 1, box_.hi.k});
     if (lo_.j == hi_.j && (lo_.k == hi_.k || lo_.i == hi_.i)) {
       for (std::int32_t k = k_begin; k < k_end; ++k) {
         voxels_.insert_run(lo_.i, hi_.i + 1, lo_.j, k);
@@ -69,7 +75,7 @@ class TriangleTracer {
     }
     const std::array edges{Edge(corners[0], corners[1]), Edge(corners[1], corners[2]),
                            Edge(corners[2], corners[0])};
-    rows_.resize(std::max(rows_.size(), static_cast<std::size_t>(hi_.j - lo_.j) + 1));
+    rows_.resize(std::max(rows_.size(), static_cast<std::size_t>(last_row_ - first_row_) + 1));
     for (std::int32_t k = k_begin; k < k_end; ++k) {
       outline(edges, k);
       mark(k);
@@ -138,10 +144,11 @@ class TriangleTracer {
     if (q.y < p.y) std::swap(p, q);
     std::int32_t j = floor_index(p.y);
     if (j < p.y) ++j;
+    j = std::max(j, first_row_);
     if (j > q.y || p.y == q.y) return;
     const double left = std::min(p.x, q.x), right = std::max(p.x, q.x);
     const double slack = slack_ * (1 + (right - left) / (q.y - p.y));
-    for (; j <= q.y; ++j) {
+    for (const double end = std::min(q.y, last_row_ + 1.0); j <= end; ++j) {
       const double x = j == q.y ? q.x : p.x + (j - p.y) / (q.y - p.y) * (q.x - p.x);
       const double low = std::max(x - slack, left - slack_);
       const double high = std::min(x + slack, right + slack_);
@@ -153,7 +160,7 @@ class TriangleTracer {
   // Widens the run of row j by x, which is exact where it is whole and else surely between low and
   // high.
   void touch(std::int32_t j, double x, double low, double high, bool open) {
-    if (j < lo_.j || j > hi_.j) return;
+    if (j < first_row_ || j > last_row_) return;
     std::int32_t first = floor_index(x), last = first;
     if (x == first) {
       if (open) --last;
@@ -161,7 +168,7 @@ class TriangleTracer {
       first = floor_index(low);
       last = floor_index(high);
     }
-    Run& run = rows_[static_cast<std::size_t>(j - lo_.j)];
+    Run& run = rows_[static_cast<std::size_t>(j - first_row_)];
     run.first = std::min(run.first, std::clamp(first, lo_.i, hi_.i));
     run.last = std::max(run.last, std::clamp(last, lo_.i, hi_.i));
     touched_first_ = std::min(touched_first_, j);
@@ -171,7 +178,7 @@ class TriangleTracer {
   // Marks the runs in layer k and forgets them.
   void mark(std::int32_t k) {
     for (std::int32_t j = touched_first_; j <= touched_last_; ++j) {
-      Run& run = rows_[static_cast<std::size_t>(j - lo_.j)];
+      Run& run = rows_[static_cast<std::size_t>(j - first_row_)];
       // All open and all on one whole x: a plane along the grid, which is in the voxel above it.
       if (run.first <= hi_.i)
         voxels_.insert_run(run.first, std::max(run.first, run.last) + 1, j, k);
@@ -182,9 +189,11 @@ class TriangleTracer {
   }
 
   VoxelSet& voxels_;
+  VoxelBox box_;
   double slack_;
-  VoxelIndex lo_, hi_;     // of the triangle, both inside
-  std::vector<Run> rows_;  // of the layer, from row lo_.j
+  VoxelIndex lo_, hi_;                 // of the triangle, both inside
+  std::int32_t first_row_, last_row_;  // of the triangle within the box
+  std::vector<Run> rows_;              // of the layer, from first_row_
   std::int32_t touched_first_ = std::numeric_limits<std::int32_t>::max();
   std::int32_t touched_last_ = std::numeric_limits<std::int32_t>::min();
 };
@@ -235,8 +244,10 @@ class Probe {
 // Grid lines through voxel centres, normal to the largest face of each triangle's bounding brick:
 // along the brick's shortest side (§4.1.2). Among equal sides the first of z, y, x.
 VoxelSet probe_boundary(const SlabbedMesh& mesh) {
-  VoxelSet voxels(mesh.box());
-  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+  const VoxelBox& box = mesh.box();
+  const std::array box_lo{box.lo.i, box.lo.j, box.lo.k}, box_hi{box.hi.i, box.hi.j, box.hi.k};
+  VoxelSet voxels(box);
+  for (const std::uint32_t t : mesh.triangles_listed()) {
     const std::array<Vec3, 3> corners = mesh.corners(t);
     const Vec3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
     const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
@@ -247,12 +258,15 @@ VoxelSet probe_boundary(const SlabbedMesh& mesh) {
     const int u = (a + 1) % 3, v = (a + 2) % 3;
     const Probe probe(corners, a);
     std::array<std::int32_t, 3> index;
-    for (index[v] = floor_index(low[v]); index[v] <= floor_index(high[v]); ++index[v]) {
-      for (index[u] = floor_index(low[u]); index[u] <= floor_index(high[u]); ++index[u]) {
+    const auto first = [&](int axis) { return std::max(floor_index(low[axis]), box_lo[axis]); };
+    const auto last = [&](int axis) { return std::min(floor_index(high[axis]), box_hi[axis] - 1); };
+    for (index[v] = first(v); index[v] <= last(v); ++index[v]) {
+      for (index[u] = first(u); index[u] <= last(u); ++index[u]) {
         const std::optional<double> met = probe.meet(index[u] + 0.5, index[v] + 0.5);
         if (!met) continue;
         index[a] = floor_index(std::clamp(*met, low[a], high[a]));
-        voxels.insert({index[0], index[1], index[2]});
+        const VoxelIndex voxel{index[0], index[1], index[2]};
+        if (box.contains(voxel)) voxels.insert(voxel);
       }
     }
   }
@@ -267,10 +281,13 @@ VoxelSet probe_boundary(const SlabbedMesh& mesh) {
 
 }  // namespace
 
+VoxelSet surface_voxels(const SlabbedMesh& mesh, BoundaryMethod method) {
+  return method == BoundaryMethod::exact ? exact_boundary(mesh) : probe_boundary(mesh);
+}
+
 VoxelSet boundary_voxels(const TriangleMesh& mesh, const Workspace& workspace,
                          BoundaryMethod method) {
-  const SlabbedMesh slabbed(mesh, workspace);
-  return method == BoundaryMethod::exact ? exact_boundary(slabbed) : probe_boundary(slabbed);
+  return surface_voxels(SlabbedMesh(mesh, workspace), method);
 }
 
 }  // namespace vicinity

@@ -88,6 +88,8 @@ std::vector<MomentPiece> edge_pieces(const std::vector<OpenEdge>& edges) {
 
 Vec3 centre_of(const VoxelIndex& v) { return {v.i + 0.5, v.j + 0.5, v.k + 0.5}; }
 
+}  // namespace
+
 class OpenWinding {
  public:
   OpenWinding(const SlabbedMesh& mesh, const std::vector<OpenEdge>& edges)
@@ -155,6 +157,8 @@ class OpenWinding {
   const SlabbedMesh& mesh_;
   MomentTree surface_, edges_;
 };
+
+namespace {
 
 // The box cut in two along every side that is not much shorter than the longest.
 std::vector<VoxelBox> quartered(const VoxelBox& box) {
@@ -281,10 +285,21 @@ void decide_run(const OpenWinding& winding, const BlockIndex& b, std::int32_t bl
 
 }  // namespace
 
-VoxelSet open_inner(const SlabbedMesh& mesh, const std::vector<OpenEdge>& edges,
-                    const VoxelSet& boundary) {
+OpenInner::OpenInner(const SlabbedMesh& mesh, const std::vector<OpenEdge>& edges)
+    : winding_(std::make_unique<const OpenWinding>(mesh, edges)) {}
+
+OpenInner::~OpenInner() = default;
+
+std::optional<bool> OpenInner::throughout(const VoxelBox& box) const {
+  if (!winding_->is_clear(box)) return std::nullopt;
+  return winding_->decide(corners_of(box));
+}
+
+bool OpenInner::is_inner(const VoxelIndex& v) const { return winding_->is_inner(v); }
+
+VoxelSet OpenInner::inner(const VoxelSet& boundary) const {
+  const OpenWinding& winding = *winding_;
   VoxelSet inner(boundary.box());
-  const OpenWinding winding(mesh, edges);
   const BlockIndex lo = inner.blocks().lo(), size = inner.blocks().size();
   tbb::parallel_for(lo.k, lo.k + size.k, [&](std::int32_t k) {
     for (std::int32_t j = lo.j; j < lo.j + size.j; ++j) {

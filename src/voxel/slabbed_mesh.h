@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-/// A mesh in grid coordinates, its triangles listed by the slabs of eight layers that they touch.
+/// A mesh in grid coordinates, or a part of one, its triangles listed by the slabs of eight layers
+/// that they touch.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,22 +30,31 @@ class SlabbedMesh {
   /// Errors: throws Error where the mesh is not finite or spans more voxels than can be indexed.
   SlabbedMesh(const TriangleMesh& mesh, const Workspace& workspace);
 
-  /// Smallest box of voxels that holds every triangle; empty for no triangle.
+  /// The same mesh with only these triangles listed, and only in the slabs of `within`: what it
+  /// takes to voxelise that box. Shares everything else.
+  /// @param listed  in rising order
+  SlabbedMesh part(std::span<const std::uint32_t> listed, const VoxelBox& within) const;
+
+  /// Smallest box of voxels that holds every triangle, and of a part what of it is within; empty
+  /// for no triangle.
   const VoxelBox& box() const noexcept { return box_; }
 
   /// Largest absolute grid coordinate of any triangle: what rounding errors are relative to.
   double reach() const noexcept { return reach_; }
 
+  /// Triangles listed in any slab, each once, in the order of the mesh.
+  std::vector<std::uint32_t> triangles_listed() const;
+
   std::size_t triangle_count() const noexcept { return triangles_.size(); }
   std::span<const std::array<std::uint32_t, 3>> triangles() const noexcept { return triangles_; }
 
   /// Vertices in grid coordinates.
-  std::span<const Vec3> vertices() const noexcept { return vertices_; }
+  std::span<const Vec3> vertices() const noexcept { return *vertices_; }
 
   /// Corners of a triangle in grid coordinates.
   std::array<Vec3, 3> corners(std::uint32_t triangle) const noexcept {
     const auto& [a, b, c] = triangles_[triangle];
-    return {vertices_[a], vertices_[b], vertices_[c]};
+    return {(*vertices_)[a], (*vertices_)[b], (*vertices_)[c]};
   }
 
   /// First slab, and the one after the last.
@@ -60,8 +71,12 @@ class SlabbedMesh {
   }
 
  private:
+  SlabbedMesh() = default;
+  template <class Indices>
+  void list(const Indices& triangles);
+
   std::span<const std::array<std::uint32_t, 3>> triangles_;
-  std::vector<Vec3> vertices_;
+  std::shared_ptr<const std::vector<Vec3>> vertices_;
   VoxelBox box_;
   double reach_ = 0;
   std::vector<std::size_t> starts_;  // of each slab in listed_, and the end

@@ -28,6 +28,7 @@
 #include <span>
 #include <vector>
 
+#include "vicinity/layers/layer_bricks.h"
 #include "vicinity/viscosity/field.h"
 
 namespace vicinity {
@@ -88,6 +89,17 @@ std::vector<VoxelRecord> records_of(const std::vector<FieldObject>& objects);
 /// prepare different regions at the same time.
 class RegionDraft {
  public:
+  /// Bricks of codes, or of distances: 512 references, and what those that are not uniform refer
+  /// to.
+  struct Layer {
+    std::array<std::uint32_t, 512> references;  // numbers count units within `bytes`
+    std::array<std::uint32_t, 512> hashes;
+    std::vector<std::byte> bytes;
+
+    /// Whether every brick is the same uniform one.
+    bool is_uniform() const noexcept;
+  };
+
   RegionDraft();
 
   /// Puts the codes of one brick in, once at most.
@@ -95,19 +107,28 @@ class RegionDraft {
   /// @param codes  of its voxels, shape (8, 8, 8) as z, y, x
   void put_codes(std::size_t brick, std::span<const VoxelCode, 512> codes);
 
+  /// The same for a brick of one object, as LayerBricks has it.
+  /// @param planes  bit b of every voxel's code, shape (at most 6,)
+  /// @param counts  of voxels by code, to which those of the brick are added
+  void put_planes(std::size_t brick, std::span<const BrickBits> planes,
+                  std::span<std::uint64_t> counts);
+
+  /// The same for a brick that is one code throughout, or packed already.
+  /// @param packed  packed codes and their table, as they lie in an image
+  void put_uniform(std::size_t brick, VoxelCode code);
+  void put_packed(std::size_t brick, unsigned width, std::span<const std::byte> packed);
+
   /// Puts the stored distances of one brick in, in steps, with no_distance where none is kept.
   void put_distances(std::size_t brick, std::span<const std::uint16_t, 512> steps);
 
- private:
-  friend class FieldWriter;
+  const Layer& codes() const noexcept { return codes_; }
+  const Layer& distances() const noexcept { return distances_; }
 
-  struct Layer {
-    std::array<std::uint32_t, 512> references;  // numbers count units within `bytes`
-    std::array<std::uint32_t, 512> hashes;
-    std::vector<std::byte> bytes;
-  };
+ private:
   Layer codes_, distances_;
 };
+
+class SparseLayer;
 
 /// Puts regions together into an image.
 class FieldWriter {
@@ -123,17 +144,22 @@ class FieldWriter {
   /// Errors: throws Error where the field outgrows 2 GiB of bricks.
   void append(const RegionDraft& region);
 
+  /// The sparse layers themselves, for who puts regions in faster than one by one: their cells are
+  /// the regions of the root. No distances where no object keeps any.
+  SparseLayer& codes() noexcept { return *codes_; }
+  SparseLayer* distances() noexcept { return distances_.get(); }
+
   /// The field of everything appended. Call it last and once: the regions are given up.
   /// @param counts  voxels of the field by kind
   ViscosityField finish(const VoxelCounts& counts);
 
  private:
-  struct Layer;
   Workspace workspace_;
   std::vector<FieldObject> objects_;
   std::vector<VoxelRecord> records_;
   VoxelIndex region_dims_;
-  std::unique_ptr<Layer> codes_, distances_;
+  std::size_t next_ = 0;  // region to append
+  std::unique_ptr<SparseLayer> codes_, distances_;
 };
 
 }  // namespace vicinity
