@@ -17,6 +17,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <tuple>
@@ -61,18 +62,26 @@ struct Presence {
   std::uint32_t codes, distances;  // references of its own array
 };
 
+/// What became of the first of all regions where the same regions of the same objects meet.
+struct Twin {
+  std::uint32_t reference = unknown;
+  VoxelCounts counts;
+};
+
 /// What becomes of one region of a row.
 struct Item {
   enum class Kind {
     as_before,  // taken over from the earlier merge
     alone,      // one object's, all of it in the workspace
-    made,       // put together from its bricks
+    together,   // several objects', all of it in the workspace
+    made,       // put together from its bricks: at the edge of the workspace, or with distances
   };
   Kind kind = Kind::made;
   std::size_t cell = 0;
   VoxelIndex at;
   std::vector<Presence> present;
   bool is_first = false;  // of its twins: to be drafted
+  Twin* twin = nullptr;   // where several objects are together
   std::unique_ptr<RegionDraft> draft;
   VoxelCounts counts;
 };
@@ -140,13 +149,25 @@ class Merge {
       }
       if (item.present.empty()) continue;
       const Presence& first = item.present.front();
-      const bool is_alone = item.present.size() == 1 && is_whole(item.at) &&
-                            arrays_[first.object]->distances() == nullptr;
-      item.kind = is_alone ? Item::Kind::alone : Item::Kind::made;
-      if (is_alone && !FieldReference::is_uniform(first.codes)) {
-        std::uint32_t& twin = twins_[first.object][first.codes];
-        item.is_first = twin == unknown;
-        if (item.is_first) twin = unknown - 1;
+      const bool is_plain =
+          is_whole(item.at) && std::ranges::all_of(item.present, [&](const Presence& p) {
+            return arrays_[p.object]->distances() == nullptr;
+          });
+      if (is_plain && item.present.size() == 1) {
+        item.kind = Item::Kind::alone;
+        if (!FieldReference::is_uniform(first.codes)) {
+          std::uint32_t& twin = twins_[first.object][first.codes];
+          item.is_first = twin == unknown;
+          if (item.is_first) twin = unknown - 1;
+        }
+      } else if (is_plain) {
+        item.kind = Item::Kind::together;
+        std::vector<std::uint64_t> key;
+        for (const Presence& p : item.present)
+          key.push_back(std::uint64_t{p.object} << 32 | p.codes);
+        const auto [twin, is_new] = meetings_.try_emplace(std::move(key));
+        item.twin = &twin->second;
+        item.is_first = is_new;
       }
       row.push_back(std::move(item));
     }
@@ -156,7 +177,7 @@ class Merge {
   /// Drafts what is new in a row. Any thread.
   void make(Row& row) const {
     for (Item& item : row) {
-      if (item.kind == Item::Kind::made || (item.kind == Item::Kind::alone && item.is_first)) {
+      if (item.kind == Item::Kind::made || item.is_first) {
         item.draft = std::make_unique<RegionDraft>();
         for (std::size_t b = 0; b < 512; ++b) make_brick(item, b);
       }
@@ -184,6 +205,10 @@ class Merge {
           if (item.is_first) twin = codes.put(item.draft->codes());
           reference = twin;
         }
+      } else if (item.kind == Item::Kind::together) {
+        if (item.is_first) *item.twin = {codes.put(item.draft->codes()), item.counts};
+        reference = item.twin->reference;
+        counts = item.twin->counts;
       } else {
         reference = codes.put(item.draft->codes());
         if (SparseLayer* distances = writer_.distances())
@@ -340,7 +365,7 @@ class Merge {
       if (is_cut) cut(item.at, b, codes, unused);
     }
     item.draft->put_codes(b, codes);
-    if (item.kind == Item::Kind::made) {
+    if (item.kind != Item::Kind::alone) {
       for (const VoxelCode code : codes) add(item.counts, code, 1);
     }
   }
@@ -357,7 +382,7 @@ class Merge {
     if (FieldReference::is_uniform(codes)) {
       const VoxelCode code = mapped(object, static_cast<VoxelCode>(codes));
       item.draft->put_uniform(b, code);
-      if (item.kind == Item::Kind::made) add(item.counts, code, 512);
+      if (item.kind != Item::Kind::alone) add(item.counts, code, 512);
       return;
     }
     const std::byte* const brick = arrays_[object]->codes().brick(codes);
@@ -372,7 +397,7 @@ class Merge {
       std::memcpy(entry, &code, sizeof(code));
     }
     item.draft->put_packed(b, width, std::span(bytes).first(size));
-    if (item.kind != Item::Kind::made) return;
+    if (item.kind == Item::Kind::alone) return;  // its object has counted
     BrickCodes all;
     unpack(
         codes, brick, [&](VoxelCode own) { return mapped(object, own); }, all);
@@ -476,6 +501,7 @@ class Merge {
   std::vector<VoxelCode> offsets_;
   std::vector<VoxelCode> precedence_, by_precedence_;
   std::vector<std::vector<std::uint32_t>> twins_;  // object's region -> reference in the field
+  std::map<std::vector<std::uint64_t>, Twin> meetings_;  // objects and their regions
   TakenOver codes_before_, distances_before_;
   std::vector<VoxelCounts> region_counts_;
   VoxelCounts counts_;

@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <deque>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 #include "vicinity/layers/distance_layers.h"
@@ -29,16 +31,24 @@ VoxelIndex region_of(const VoxelIndex& v) { return {v.i >> 6, v.j >> 6, v.k >> 6
 /// Regions on their way into an array.
 struct Drafts {
   struct Region {
-    VoxelIndex at;
+    VoxelIndex at;  // from the tile's first region
     RegionDraft draft;
     std::vector<std::uint64_t> counts;
+    std::optional<ObjectVoxelArray::Reference>
+        put;  // once it is in: equal tiles share their drafts
   };
   std::vector<std::unique_ptr<Region>> regions;
 
   Region& add(const VoxelIndex& at, int q) {
     return *regions.emplace_back(std::make_unique<Region>(
-        Region{at, {}, std::vector<std::uint64_t>(object_code::count(q))}));
+        Region{at, {}, std::vector<std::uint64_t>(object_code::count(q)), {}}));
   }
+};
+
+/// Drafts, and where they go.
+struct PlacedDrafts {
+  VoxelIndex region;  // the tile's first
+  std::shared_ptr<Drafts> drafts;
 };
 
 /// Adds the time from its making to its end.
@@ -68,24 +78,31 @@ void put_in_order(std::size_t count, ObjectVoxelArray& array,
                                                     if (next == count) flow.stop();
                                                     return next++;
                                                   }) &
-                  tbb::make_filter<std::size_t, std::shared_ptr<Drafts>>(
-                      tbb::filter_mode::parallel,
-                      [&](std::size_t n) { return std::make_shared<Drafts>(make(n)); }) &
-                  tbb::make_filter<std::shared_ptr<Drafts>, void>(
-                      tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<Drafts>& made) {
-                        for (const auto& region : made->regions)
-                          array.put(region->at, region->draft, region->counts);
+                  tbb::make_filter<std::size_t, PlacedDrafts>(
+                      tbb::filter_mode::parallel, [&](std::size_t n) { return make(n); }) &
+                  tbb::make_filter<PlacedDrafts, void>(
+                      tbb::filter_mode::serial_in_order, [&](const PlacedDrafts& made) {
+                        if (made.drafts != nullptr) {
+                          for (const auto& region : made.drafts->regions) {
+                            const VoxelIndex at = {made.region.i + region->at.i,
+                                                   made.region.j + region->at.j,
+                                                   made.region.k + region->at.k};
+                            if (!region->put)
+                              region->put = array.put(region->draft, region->counts);
+                            array.set(at, *region->put, region->counts);
+                          }
+                        }
                         onward(static_cast<double>(++done) / static_cast<double>(count));
                       }));
 }
 
 /// Gives the bricks of a tile to its regions.
-void draft(const LayerBricks& bricks, int q, Drafts& drafts) {
+void draft(const LayerBricks& bricks, const VoxelIndex& tile, int q, Drafts& drafts) {
   std::array<Drafts::Region*, tile_regions * tile_regions * tile_regions> made{};
   bricks.for_each_brick([&](const BlockIndex& b, std::span<const BrickBits> planes) {
-    const VoxelIndex at = {b.i >> 3, b.j >> 3, b.k >> 3};
-    Drafts::Region*& region = made[static_cast<std::size_t>(
-        ((at.k & 3) * tile_regions + (at.j & 3)) * tile_regions + (at.i & 3))];
+    const VoxelIndex at = {(b.i >> 3) - tile.i, (b.j >> 3) - tile.j, (b.k >> 3) - tile.k};
+    Drafts::Region*& region =
+        made[static_cast<std::size_t>((at.k * tile_regions + at.j) * tile_regions + at.i)];
     if (region == nullptr) region = &drafts.add(at, q);
     region->draft.put_planes(static_cast<std::size_t>(((b.k & 7) * 8 + (b.j & 7)) * 8 + (b.i & 7)),
                              planes, region->counts);
@@ -93,17 +110,68 @@ void draft(const LayerBricks& bricks, int q, Drafts& drafts) {
 }
 
 /// A tile that is inner throughout.
-void draft_inner(const VoxelBox& tile, int q, Drafts& drafts) {
-  for (std::int32_t k = tile.lo.k >> 6; k < tile.hi.k >> 6; ++k) {
-    for (std::int32_t j = tile.lo.j >> 6; j < tile.hi.j >> 6; ++j) {
-      for (std::int32_t i = tile.lo.i >> 6; i < tile.hi.i >> 6; ++i) {
-        Drafts::Region& region = drafts.add({i, j, k}, q);
-        for (std::size_t b = 0; b < 512; ++b) region.draft.put_uniform(b, object_code::inner);
-        region.counts[object_code::inner] = 64 * 64 * 64;
-      }
-    }
+std::shared_ptr<Drafts> inner_tile(int q) {
+  auto drafts = std::make_shared<Drafts>();
+  for (std::int32_t r = 0; r < tile_regions * tile_regions * tile_regions; ++r) {
+    Drafts::Region& region = drafts->add(
+        {r % tile_regions, r / tile_regions % tile_regions, r / tile_regions / tile_regions}, q);
+    for (std::size_t b = 0; b < 512; ++b) region.draft.put_uniform(b, object_code::inner);
+    region.counts[object_code::inner] = 64 * 64 * 64;
   }
+  return drafts;
 }
+
+/// The last few tiles and what became of them. Floors, walls and straight pipes look the same tile
+/// after tile: those are ranked once.
+class LatestTiles {
+ public:
+  /// The voxels that decide over a tile, seen from its first one.
+  class Look {
+   public:
+    Look(const VoxelIndex& tile, const VoxelSet& boundary, const VoxelSet& inner) {
+      take(tile, boundary);
+      starts_inner_ = blocks_.size();
+      take(tile, inner);
+    }
+    bool operator==(const Look& other) const {
+      return starts_inner_ == other.starts_inner_ && places_ == other.places_ &&
+             blocks_ == other.blocks_;
+    }
+
+   private:
+    void take(const VoxelIndex& tile, const VoxelSet& voxels) {
+      voxels.blocks().for_each([&](const BlockIndex& b, const BitBlock& block) {
+        places_.push_back({b.i - (tile.i >> 6), b.j - (tile.j >> 3), b.k - (tile.k >> 3)});
+        blocks_.push_back(block.words);
+      });
+    }
+
+    std::size_t starts_inner_;
+    std::vector<BlockIndex> places_;
+    std::vector<std::array<std::uint64_t, 64>> blocks_;
+  };
+
+  /// The drafts of an equal tile; null where none of the last few is.
+  std::shared_ptr<Drafts> find(const Look& look) const {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [known, drafts] : latest_) {
+      if (*known == look) return drafts;
+    }
+    return nullptr;
+  }
+
+  void put(Look&& look, const std::shared_ptr<Drafts>& drafts) {
+    const std::lock_guard lock(mutex_);
+    if (latest_.size() == capacity) latest_.pop_back();
+    latest_.emplace_front(std::make_unique<const Look>(std::move(look)), drafts);
+  }
+
+ private:
+  static constexpr std::size_t capacity = 12;  // half a MiB each, at most a few
+
+  mutable std::mutex mutex_;
+  std::deque<std::pair<std::unique_ptr<const Look>, std::shared_ptr<Drafts>>> latest_;
+};
 
 /// Ranked by a shaping element.
 ObjectVoxelArray ranked_array(const SceneObject& object, const Voxeliser& voxeliser,
@@ -128,39 +196,41 @@ ObjectVoxelArray ranked_array(const SceneObject& object, const Voxeliser& voxeli
   };
 
   tbb::enumerable_thread_specific<LayerBricks> memory;
+  LatestTiles latest;
+  const auto drafts_of = [&](const VoxelBox& tile) -> std::shared_ptr<Drafts> {
+    const VoxelBox seen = tile.grown(LayerBricks::halo(object.m, object.q));
+    VoxelSet boundary, inner;
+    {
+      const Stopwatch watch(times.voxelise);
+      boundary = voxeliser.boundary(seen);
+    }
+    {
+      const Stopwatch watch(times.fill);
+      if (boundary.box().empty()) return nullptr;
+      if (boundary.blocks().block_count() == 0) {
+        const std::optional<bool> is_inner = voxeliser.inner_throughout(boundary.box());
+        if (is_inner == false) return nullptr;
+        if (is_inner == true && boundary.box() == seen) return inner_tile(object.q);
+      }
+      inner = voxeliser.inner(boundary);
+    }
+    const Stopwatch watch(times.rank);
+    LatestTiles::Look look(tile.lo, boundary, inner);
+    if (std::shared_ptr<Drafts> known = latest.find(look)) return known;
+    LayerBricks& bricks = memory.local();
+    bricks.start(tile, object.m, object.q);
+    bricks.put_boundary(boundary);
+    bricks.put_inner(inner);
+    bricks.rank(element);
+    auto drafts = std::make_shared<Drafts>();
+    draft(bricks, region_of(tile.lo), object.q, *drafts);
+    latest.put(std::move(look), drafts);
+    return drafts;
+  };
   put_in_order(static_cast<std::size_t>(std::int64_t{i_count} * j_count * k_count), array, onward,
                [&](std::size_t n) {
-                 Drafts drafts;
                  const VoxelBox tile = tile_at(n);
-                 const VoxelBox seen = tile.grown(LayerBricks::halo(object.m, object.q));
-                 VoxelSet boundary, inner;
-                 {
-                   const Stopwatch watch(times.voxelise);
-                   boundary = voxeliser.boundary(seen);
-                 }
-                 {
-                   const Stopwatch watch(times.fill);
-                   const bool bare = boundary.blocks().block_count() == 0;
-                   if (bare && boundary.box().empty()) return drafts;
-                   if (bare) {
-                     const std::optional<bool> is_inner =
-                         voxeliser.inner_throughout(boundary.box());
-                     if (is_inner == false) return drafts;
-                     if (is_inner == true && boundary.box() == seen) {
-                       draft_inner(tile, object.q, drafts);
-                       return drafts;
-                     }
-                   }
-                   inner = voxeliser.inner(boundary);
-                 }
-                 const Stopwatch watch(times.rank);
-                 LayerBricks& bricks = memory.local();
-                 bricks.start(tile, object.m, object.q);
-                 bricks.put_boundary(boundary);
-                 bricks.put_inner(inner);
-                 bricks.rank(element);
-                 draft(bricks, object.q, drafts);
-                 return drafts;
+                 return PlacedDrafts{region_of(tile.lo), drafts_of(tile)};
                });
   return array;
 }
@@ -229,7 +299,7 @@ ObjectVoxelArray distance_array(const SceneObject& object, const TriangleMesh& m
   put_in_order(static_cast<std::size_t>(size.j) * static_cast<std::size_t>(size.k), array, onward,
                [&](std::size_t n) {
                  const Stopwatch watch(times.rank);
-                 Drafts drafts;
+                 const auto drafts = std::make_shared<Drafts>();
                  const auto row = std::make_unique<DistanceRow>();
                  const VoxelIndex at = {0, lo.j + static_cast<std::int32_t>(n) % size.j,
                                         lo.k + static_cast<std::int32_t>(n) / size.j};
@@ -250,7 +320,7 @@ ObjectVoxelArray distance_array(const SceneObject& object, const TriangleMesh& m
                        row->lay(layers.neighbours.ranks[static_cast<std::size_t>(rank - 1)], b,
                                 object_code::of_rank(rank), distances);
                      }
-                     if (region == nullptr) region = &drafts.add({i, at.j, at.k}, object.q);
+                     if (region == nullptr) region = &drafts->add({i, at.j, at.k}, object.q);
                      for (const VoxelCode code : row->codes) ++region->counts[code];
                      for (std::size_t brick = 0; brick < 8; ++brick) {
                        const std::size_t place = static_cast<std::size_t>(r) * 8 + brick;
@@ -259,7 +329,7 @@ ObjectVoxelArray distance_array(const SceneObject& object, const TriangleMesh& m
                      }
                    }
                  }
-                 return drafts;
+                 return PlacedDrafts{{0, 0, 0}, drafts};
                });
   return array;
 }
@@ -281,19 +351,25 @@ ObjectVoxelArray::ObjectVoxelArray(const VoxelBox& box, int q, bool keeps_distan
     distances_.emplace(codes_.root().size(), 512 * sizeof(std::uint16_t), no_distance);
 }
 
-void ObjectVoxelArray::put(const VoxelIndex& region, const RegionDraft& draft,
-                           std::span<const std::uint64_t> counts) {
-  const std::size_t cell = cell_of(region);
-  const std::uint32_t reference = codes_.put(draft.codes());
-  codes_.set(cell, reference);
-  if (distances_) distances_->set(cell, distances_->put(draft.distances()));
-  if (!FieldReference::is_uniform(reference) && reference == region_counts_.size()) {
+ObjectVoxelArray::Reference ObjectVoxelArray::put(const RegionDraft& draft,
+                                                  std::span<const std::uint64_t> counts) {
+  const Reference put = {codes_.put(draft.codes()),
+                         distances_ ? distances_->put(draft.distances()) : 0};
+  if (!FieldReference::is_uniform(put.codes) && put.codes == region_counts_.size()) {
     VoxelCounts& kinds = region_counts_.emplace_back();
     kinds.boundary = counts[object_code::boundary];
     kinds.inner = counts[object_code::inner];
     for (std::size_t code = object_code::inner + 1; code < counts.size(); ++code)
       kinds.neighbour += counts[code];
   }
+  return put;
+}
+
+void ObjectVoxelArray::set(const VoxelIndex& region, const Reference& reference,
+                           std::span<const std::uint64_t> counts) {
+  const std::size_t cell = cell_of(region);
+  codes_.set(cell, reference.codes);
+  if (distances_) distances_->set(cell, reference.distances);
   for (std::size_t code = 0; code < counts.size(); ++code) counts_[code] += counts[code];
 }
 

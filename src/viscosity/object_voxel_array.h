@@ -39,9 +39,15 @@ class ObjectVoxelArray {
     return VoxelBox{lo_, {lo_.i + size_.i, lo_.j + size_.j, lo_.k + size_.k}}.contains(region);
   }
 
-  /// Puts a region in, once at most.
+  /// References of a region in the array's layers.
+  struct Reference {
+    std::uint32_t codes, distances;
+  };
+
+  /// Takes a region up; set() then says where it stands.
   /// @param counts  its voxels by code, shape (object_code::count(q),)
-  void put(const VoxelIndex& region, const RegionDraft& draft,
+  Reference put(const RegionDraft& draft, std::span<const std::uint64_t> counts);
+  void set(const VoxelIndex& region, const Reference& reference,
            std::span<const std::uint64_t> counts);
 
   const SparseLayer& codes() const noexcept { return codes_; }
