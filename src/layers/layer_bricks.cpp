@@ -18,31 +18,11 @@
 #include <algorithm>
 #include <bit>
 
+#include "brick_rows.h"
 #include "brick_stamp.h"
 
 namespace vicinity {
 namespace {
-
-/// The eight bricks of a block of 64 x 8 x 8 voxels: its rows are cut into bytes, and bytes of
-/// eight rows make a word of a brick.
-std::array<BrickBits, 8> bricks_of(const BitBlock& block) noexcept {
-  std::array<BrickBits, 8> bricks;
-  for (std::size_t k = 0; k < 8; ++k) {
-    std::array<std::uint64_t, 8> w;
-    for (std::size_t j = 0; j < 8; ++j) w[j] = block.words[k * 8 + j];
-    // A matrix of 8 x 8 bytes is turned over its diagonal: halves, quarters, single bytes.
-    const auto swap = [&](std::size_t a, std::size_t b, int shift, std::uint64_t low) {
-      const std::uint64_t t = ((w[a] >> shift) ^ w[b]) & low;
-      w[b] ^= t;
-      w[a] ^= t << shift;
-    };
-    for (std::size_t j = 0; j < 4; ++j) swap(j, j + 4, 32, 0x00000000ffffffff);
-    for (const std::size_t j : {0, 1, 4, 5}) swap(j, j + 2, 16, 0x0000ffff0000ffff);
-    for (const std::size_t j : {0, 2, 4, 6}) swap(j, j + 1, 8, 0x00ff00ff00ff00ff);
-    for (std::size_t b = 0; b < 8; ++b) bricks[b].words[k] = w[b];
-  }
-  return bricks;
-}
 
 bool is_full(const BrickBits& bits) noexcept {
   std::uint64_t all = ~std::uint64_t{0};

@@ -7,12 +7,16 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "brick_rows.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/layers/layer_bricks.h"
 
@@ -39,6 +43,17 @@ std::vector<VoxelBox> tiles_of(const VoxelBox& box) {
   return tiles;
 }
 
+/// The voxels of a brick with this code.
+BrickBits voxels_with(unsigned code, std::span<const BrickBits> planes) {
+  BrickBits bits;
+  bits.words.fill(~std::uint64_t{0});
+  for (std::size_t p = 0; p < planes.size(); ++p) {
+    const std::uint64_t flip = (code >> p & 1) != 0 ? 0 : ~std::uint64_t{0};
+    for (std::size_t k = 0; k < 8; ++k) bits.words[k] &= planes[p].words[k] ^ flip;
+  }
+  return bits;
+}
+
 /// Writes the ranked voxels of a tile into the sets of their ranks. Threads that do so at the same
 /// time take turns slab by slab.
 class RankSets {
@@ -49,26 +64,34 @@ class RankSets {
         turns_(static_cast<std::size_t>(((box.hi.k + 7) >> 3) - lo_)) {}
 
   void put(const LayerBricks& bricks) {
-    bricks.for_each_brick([&](const BlockIndex& at, std::span<const BrickBits> planes) {
+    // Eight bricks along x make a block; they come one after the other.
+    BlockIndex at{};
+    std::vector<std::array<BrickBits, 8>> of_rank(ranks_.size());
+    std::uint64_t found = 0;  // ranks with a voxel in the block
+    const auto flush = [&] {
+      if (found == 0) return;
       const std::lock_guard turn(turns_[static_cast<std::size_t>(at.k - lo_)]);
-      for (std::size_t n = 1; n <= ranks_.size(); ++n) {
-        const unsigned code = object_code::of_rank(static_cast<int>(n));
-        BrickBits bits;
-        for (std::size_t k = 0; k < 8; ++k) {
-          std::uint64_t word = ~std::uint64_t{0};
-          for (std::size_t p = 0; p < planes.size(); ++p) {
-            word &= (code >> p & 1) != 0 ? planes[p].words[k] : ~planes[p].words[k];
-          }
-          bits.words[k] = word;
-        }
+      for (; found != 0; found &= found - 1) {
+        const auto rank = static_cast<std::size_t>(std::countr_zero(found));
+        add_bricks(of_rank[rank], ranks_[rank].blocks().make(at));
+        of_rank[rank] = {};
+      }
+    };
+    bricks.for_each_brick([&](const BlockIndex& b, std::span<const BrickBits> planes) {
+      const BlockIndex block{b.i >> 3, b.j, b.k};
+      if (!(block == at)) {
+        flush();
+        at = block;
+      }
+      for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
+        const BrickBits bits =
+            voxels_with(object_code::of_rank(static_cast<int>(rank) + 1), planes);
         if (!bits.any()) continue;
-        BitBlock& block = ranks_[n - 1].blocks().make({at.i >> 3, at.j, at.k});
-        const int shift = (at.i & 7) * 8;
-        for (std::size_t row = 0; row < 64; ++row) {
-          block.words[row] |= (bits.words[row >> 3] >> (row & 7) * 8 & 0xff) << shift;
-        }
+        of_rank[rank][static_cast<std::size_t>(b.i & 7)] = bits;
+        found |= std::uint64_t{1} << rank;
       }
     });
+    flush();
   }
 
  private:

@@ -22,6 +22,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "code_masks.h"
 #include "image_layers.h"
 #include "packed_brick.h"
 #include "sparse_layer.h"
@@ -351,7 +352,10 @@ class Merge {
     }
     if (count == 0) return;
     const bool is_cut = !is_whole(item.at) && cut_size(item.at, b) < 512;
-    if (count == 1 && !is_cut && !by_distance) return map_brick(item, b, *only);
+    if (!by_distance) {
+      if (count == 1 && !is_cut) return map_brick(item, b, *only);
+      if (contest_by_masks(item, b, is_cut)) return;
+    }
 
     BrickCodes codes;
     if (by_distance) {
@@ -365,9 +369,7 @@ class Merge {
       if (is_cut) cut(item.at, b, codes, unused);
     }
     item.draft->put_codes(b, codes);
-    if (item.kind != Item::Kind::alone) {
-      for (const VoxelCode code : codes) add(item.counts, code, 1);
-    }
+    for (const VoxelCode code : codes) add(item.counts, code, 1);
   }
 
   std::uint32_t brick_codes(const Presence& p, std::size_t b) const noexcept {
@@ -398,10 +400,56 @@ class Merge {
     }
     item.draft->put_packed(b, width, std::span(bytes).first(size));
     if (item.kind == Item::Kind::alone) return;  // its object has counted
+    CodeMasks masks;
+    if (split(codes, brick, masks)) {
+      for (std::size_t n = 0; n < masks.count(); ++n)
+        add(item.counts, mapped(object, masks.codes()[n]), vicinity::count(masks.mask(n)));
+      return;
+    }
     BrickCodes all;
     unpack(
         codes, brick, [&](VoxelCode own) { return mapped(object, own); }, all);
     for (const VoxelCode code : all) add(item.counts, code, 1);
+  }
+
+  /// Settles all voxels of a brick at once: codes take what they can of the workspace's voxels,
+  /// highest precedence first.
+  /// @return  false where there are too many codes
+  bool contest_by_masks(Item& item, std::size_t b, bool is_cut) const {
+    CodeMasks claims;  // by precedence
+    for (const Presence& p : item.present) {
+      const std::uint32_t codes = brick_codes(p, b);
+      if (codes == nothing) continue;
+      CodeMasks own;
+      if (!split(codes, arrays_[p.object]->codes().brick(codes), own)) return false;
+      if (claims.count() + own.count() > CodeMasks::most) return false;
+      for (std::size_t n = 0; n < own.count(); ++n) {
+        if (own.codes()[n] == 0) continue;
+        claims.push(precedence_[mapped(p.object, own.codes()[n])], own.mask(n));
+      }
+    }
+    claims.sort();
+    BrickBits open, empty;
+    open.words.fill(~std::uint64_t{0});
+    empty = open;
+    if (is_cut) open = within(item.at, b);
+    CodeMasks winners;
+    for (std::size_t n = claims.count(); n-- > 0;) {
+      BrickBits won;
+      for (std::size_t k = 0; k < 8; ++k) {
+        won.words[k] = claims.mask(n).words[k] & open.words[k];
+        open.words[k] &= ~won.words[k];
+        empty.words[k] &= ~won.words[k];
+      }
+      if (!won.any()) continue;
+      const VoxelCode code = by_precedence_[claims.codes()[n]];
+      winners.push(code, won);
+      add(item.counts, code, vicinity::count(won));
+    }
+    if (empty.any()) winners.push(0, empty);
+    winners.sort();
+    item.draft->put_masks(b, winners);
+    return true;
   }
 
   /// Who wins each voxel of a brick, by the precedence of codes.
@@ -480,6 +528,17 @@ class Merge {
     const VoxelIndex lo = corner(region, b);
     const VoxelBox in = VoxelBox{lo, {lo.i + 8, lo.j + 8, lo.k + 8}}.within(workspace_.box());
     return in.empty() ? 0 : (in.hi.i - in.lo.i) * (in.hi.j - in.lo.j) * (in.hi.k - in.lo.k);
+  }
+
+  /// The voxels of a brick that lie in the workspace.
+  BrickBits within(const VoxelIndex& region, std::size_t b) const noexcept {
+    const VoxelIndex lo = corner(region, b);
+    BrickBits bits;
+    for (std::int32_t v = 0; v < 512; ++v) {
+      if (workspace_.box().contains({lo.i + v % 8, lo.j + v / 8 % 8, lo.k + v / 64}))
+        bits.words[static_cast<std::size_t>(v / 64)] |= std::uint64_t{1} << v % 64;
+    }
+    return bits;
   }
 
   /// Takes out what lies beyond the workspace.

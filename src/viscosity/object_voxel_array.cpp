@@ -15,6 +15,7 @@
 #include <mutex>
 #include <utility>
 
+#include "code_masks.h"
 #include "vicinity/layers/distance_layers.h"
 #include "vicinity/layers/layer_bricks.h"
 #include "vicinity/voxel/voxeliser.h"
@@ -99,13 +100,17 @@ void put_in_order(std::size_t count, ObjectVoxelArray& array,
 /// Gives the bricks of a tile to its regions.
 void draft(const LayerBricks& bricks, const VoxelIndex& tile, int q, Drafts& drafts) {
   std::array<Drafts::Region*, tile_regions * tile_regions * tile_regions> made{};
+  CodeMasks masks;
   bricks.for_each_brick([&](const BlockIndex& b, std::span<const BrickBits> planes) {
     const VoxelIndex at = {(b.i >> 3) - tile.i, (b.j >> 3) - tile.j, (b.k >> 3) - tile.k};
     Drafts::Region*& region =
         made[static_cast<std::size_t>((at.k * tile_regions + at.j) * tile_regions + at.i)];
     if (region == nullptr) region = &drafts.add(at, q);
-    region->draft.put_planes(static_cast<std::size_t>(((b.k & 7) * 8 + (b.j & 7)) * 8 + (b.i & 7)),
-                             planes, region->counts);
+    split(planes, masks);
+    for (std::size_t n = 0; n < masks.count(); ++n)
+      region->counts[masks.codes()[n]] += count(masks.mask(n));
+    region->draft.put_masks(static_cast<std::size_t>(((b.k & 7) * 8 + (b.j & 7)) * 8 + (b.i & 7)),
+                            masks);
   });
 }
 

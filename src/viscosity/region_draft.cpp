@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstring>
 
+#include "code_masks.h"
 #include "packed_brick.h"
 #include "sparse_layer.h"
 #include "vicinity/geometry/machine_clones.h"
@@ -62,59 +63,16 @@ constexpr std::uint64_t spread_4(std::uint64_t w) noexcept {
   return (w | w << 3) & 0x1111111111111111;
 }
 
-/// The distinct codes of a brick, and which voxels have each.
-struct CodeMasks {
-  std::size_t count = 0;
-  std::array<VoxelCode, 64> codes;  // rising
-  std::array<BrickBits, 64> masks;
-  std::array<std::uint32_t, 64> voxels;
-};
-
-/// Splits a brick by one plane after another, highest first, and keeps what is not empty.
-VICINITY_MACHINE_CLONES
-void split(const BrickBits* planes, std::size_t plane_count, CodeMasks& found) noexcept {
-  found.count = 1;
-  found.codes[0] = 0;
-  found.masks[0].words.fill(~std::uint64_t{0});
-  for (std::size_t p = plane_count; p-- > 0;) {
-    CodeMasks halves;
-    halves.count = 0;
-    for (std::size_t n = 0; n < found.count; ++n) {
-      for (const bool set : {false, true}) {
-        BrickBits& half = halves.masks[halves.count];
-        std::uint64_t any = 0;
-        for (std::size_t k = 0; k < 8; ++k) {
-          const std::uint64_t plane = planes[p].words[k];
-          half.words[k] = found.masks[n].words[k] & (set ? plane : ~plane);
-          any |= half.words[k];
-        }
-        if (any == 0) continue;
-        halves.codes[halves.count++] = static_cast<VoxelCode>(found.codes[n] * 2 + (set ? 1 : 0));
-      }
-    }
-    for (std::size_t n = 0; n < halves.count; ++n) {
-      found.codes[n] = halves.codes[n];
-      found.masks[n] = halves.masks[n];
-    }
-    found.count = halves.count;
-  }
-  for (std::size_t n = 0; n < found.count; ++n) {
-    int voxels = 0;
-    for (const std::uint64_t word : found.masks[n].words) voxels += std::popcount(word);
-    found.voxels[n] = static_cast<std::uint32_t>(voxels);
-  }
-}
-
 /// Packs the masks of 2 to 64 codes.
 /// @return  the width
 VICINITY_MACHINE_CLONES
 unsigned pack(const CodeMasks& found, PackedBrick& brick) noexcept {
-  const unsigned width = width_for(found.count);
+  const unsigned width = width_for(found.count());
   std::array<BrickBits, 6> planes{};  // bit b of every voxel's index
-  for (std::size_t n = 1; n < found.count; ++n) {
+  for (std::size_t n = 1; n < found.count(); ++n) {
     for (std::size_t b = 0; b < 6; ++b) {
       if ((n >> b & 1) == 0) continue;
-      for (std::size_t k = 0; k < 8; ++k) planes[b].words[k] |= found.masks[n].words[k];
+      for (std::size_t k = 0; k < 8; ++k) planes[b].words[k] |= found.mask(n).words[k];
     }
   }
   std::array<std::uint64_t, 64> words{};
@@ -141,7 +99,7 @@ unsigned pack(const CodeMasks& found, PackedBrick& brick) noexcept {
     }
   }
   std::memcpy(brick.bytes.data(), words.data(), std::size_t{64} << width);
-  brick.put_table(width, std::span(found.codes).first(found.count));
+  brick.put_table(width, found.codes());
   return width;
 }
 
@@ -170,14 +128,10 @@ void RegionDraft::put_packed(std::size_t brick, unsigned width, std::span<const 
   codes_.bytes.insert(codes_.bytes.end(), packed.begin(), packed.end());
 }
 
-void RegionDraft::put_planes(std::size_t brick, std::span<const BrickBits> planes,
-                             std::span<std::uint64_t> counts) {
-  CodeMasks found;
-  split(planes.data(), planes.size(), found);
-  for (std::size_t n = 0; n < found.count; ++n) counts[found.codes[n]] += found.voxels[n];
-  if (found.count == 1) return put_uniform(brick, found.codes[0]);
+void RegionDraft::put_masks(std::size_t brick, const CodeMasks& masks) {
+  if (masks.count() == 1) return put_uniform(brick, masks.codes()[0]);
   PackedBrick packed;
-  const unsigned width = pack(found, packed);
+  const unsigned width = pack(masks, packed);
   put_packed(brick, width, std::span(packed.bytes).first(packed.size));
 }
 

@@ -28,7 +28,6 @@
 #include <span>
 #include <vector>
 
-#include "vicinity/layers/layer_bricks.h"
 #include "vicinity/viscosity/field.h"
 
 namespace vicinity {
@@ -85,6 +84,8 @@ std::uint64_t checksum_of(std::span<const std::byte> bytes) noexcept;
 /// Errors: throws Error where they do not fit 16 bits.
 std::vector<VoxelRecord> records_of(const std::vector<FieldObject>& objects);
 
+class CodeMasks;  // see src/viscosity/code_masks.h
+
 /// One region on its way into a field: empty until bricks are put in, in rising order. Threads may
 /// prepare different regions at the same time.
 class RegionDraft {
@@ -107,11 +108,8 @@ class RegionDraft {
   /// @param codes  of its voxels, shape (8, 8, 8) as z, y, x
   void put_codes(std::size_t brick, std::span<const VoxelCode, 512> codes);
 
-  /// The same for a brick of one object, as LayerBricks has it.
-  /// @param planes  bit b of every voxel's code, shape (at most 6,)
-  /// @param counts  of voxels by code, to which those of the brick are added
-  void put_planes(std::size_t brick, std::span<const BrickBits> planes,
-                  std::span<std::uint64_t> counts);
+  /// The same for a brick given by the voxels of each of its codes.
+  void put_masks(std::size_t brick, const CodeMasks& masks);
 
   /// The same for a brick that is one code throughout, or packed already.
   /// @param packed  packed codes and their table, as they lie in an image
