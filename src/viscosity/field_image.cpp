@@ -14,6 +14,7 @@
 
 #include "sparse_layer.h"
 #include "vicinity/geometry/error.h"
+#include "vicinity/voxel/huge_pages.h"
 
 namespace vicinity {
 namespace {
@@ -132,7 +133,8 @@ ViscosityField FieldWriter::finish(const VoxelCounts& counts) {
   header.image_size = size;
   header.checksum = checksum_of(std::as_bytes(std::span(&header, 1)));
 
-  const std::shared_ptr<std::byte[]> image(new std::byte[size]);
+  const std::shared_ptr<std::byte[]> image(static_cast<std::byte*>(take_pages(size)),
+                                           give_back_pages);
   std::memcpy(image.get(), &header, sizeof(header));
   std::size_t written = sizeof(header);
   for (std::size_t s = 0; s < contents.size(); ++s) {

@@ -109,6 +109,8 @@ class Merge {
     if (earlier != nullptr) {
       const auto image = earlier->merged.field.image();
       codes_before_ = TakenOver(layer_of_image(image, false), FieldReference::brick_unit);
+      writer_.codes().reserve(codes_before_.layer.regions.size_bytes(),
+                              codes_before_.layer.bricks.size());
       if (writer_.distances() != nullptr) {
         distances_before_ = TakenOver(layer_of_image(image, true), 512 * sizeof(std::uint16_t));
       }
@@ -264,7 +266,7 @@ class Merge {
 
     ImageLayer layer;
     std::size_t unit = 0;
-    std::vector<std::uint32_t> regions, bricks;  // -> reference in the new field
+    HugeVector<std::uint32_t> regions, bricks;  // -> reference in the new field
   };
 
   void take_over(std::size_t cell) {

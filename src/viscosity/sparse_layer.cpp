@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include "vicinity/geometry/error.h"
@@ -19,7 +20,7 @@ std::uint32_t short_hash(std::span<const std::byte> bytes) noexcept {
 
 std::uint32_t SharedBytes::put(std::span<const std::byte> string, std::uint32_t width,
                                std::uint32_t hash) {
-  if (count_ * 2 >= slots_.size()) grow();
+  if (count_ * 2 >= slots_.size()) rehash(slots_.size() * 2);
   std::size_t at = hash & (slots_.size() - 1);
   for (; slots_[at].taken; at = (at + 1) & (slots_.size() - 1)) {
     if (slots_[at].hash == hash && equal(slots_[at].reference, width, string)) {
@@ -50,8 +51,13 @@ bool SharedBytes::equal(std::uint32_t reference, std::uint32_t width,
          std::memcmp(bytes_.data() + at, string.data(), string.size()) == 0;
 }
 
-void SharedBytes::grow() {
-  std::vector<Slot> old(slots_.size() * 2);
+void SharedBytes::reserve(std::size_t bytes, std::size_t strings) {
+  bytes_.reserve(bytes);
+  if (strings * 2 > slots_.size()) rehash(std::bit_ceil(strings * 2));
+}
+
+void SharedBytes::rehash(std::size_t slots) {
+  HugeVector<Slot> old(slots);
   old.swap(slots_);
   for (const Slot& slot : old) {
     if (!slot.taken) continue;
@@ -66,6 +72,13 @@ SparseLayer::SparseLayer(std::size_t cells, std::size_t brick_unit, std::uint16_
       root_(cells, FieldReference::uniform(nothing)),
       regions_(region_size),
       bricks_(brick_unit) {}
+
+void SparseLayer::reserve(std::size_t region_bytes, std::size_t brick_bytes) {
+  // A little more: what is built next is mostly what was built last. Bricks take 64 bytes at least.
+  const auto and_more = [](std::size_t bytes) { return bytes + bytes / 16; };
+  regions_.reserve(and_more(region_bytes), and_more(region_bytes) / region_size);
+  bricks_.reserve(and_more(brick_bytes), and_more(brick_bytes) / 96);
+}
 
 std::uint32_t SparseLayer::put(const RegionDraft::Layer& draft) {
   if (draft.is_uniform()) return draft.references[0];

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vicinity/viscosity/field_image.h"
+#include "vicinity/voxel/huge_pages.h"
 
 namespace vicinity {
 
@@ -19,8 +20,11 @@ class SharedBytes {
  public:
   explicit SharedBytes(std::size_t unit) : unit_(unit), slots_(1024) {}
 
-  const std::vector<std::byte>& bytes() const noexcept { return bytes_; }
-  void release() noexcept { std::vector<std::byte>().swap(bytes_); }
+  std::span<const std::byte> bytes() const noexcept { return bytes_; }
+  void release() noexcept { HugeVector<std::byte>().swap(bytes_); }
+
+  /// Makes room for so many bytes in so many strings: growing would copy them all.
+  void reserve(std::size_t bytes, std::size_t strings);
 
   /// @param string  a whole number of units
   /// @return        the reference of an equal string put in before, else of a new one
@@ -36,12 +40,12 @@ class SharedBytes {
 
   bool equal(std::uint32_t reference, std::uint32_t width,
              std::span<const std::byte> string) const noexcept;
-  void grow();
+  void rehash(std::size_t slots);
 
   std::size_t unit_;
   std::size_t count_ = 0;
-  std::vector<Slot> slots_;  // open addressing, a power of two of them
-  std::vector<std::byte> bytes_;
+  HugeVector<Slot> slots_;  // open addressing, a power of two of them
+  HugeVector<std::byte> bytes_;
 };
 
 /// The hash that strings are put in with.
@@ -74,6 +78,9 @@ class SparseLayer {
   const std::byte* brick(std::uint32_t reference) const noexcept {
     return bricks_.bytes().data() + (reference & FieldReference::number_mask) * brick_unit_;
   }
+
+  /// Makes room for as much as another field took.
+  void reserve(std::size_t region_bytes, std::size_t brick_bytes);
 
   SharedBytes& regions() noexcept { return regions_; }
   SharedBytes& bricks() noexcept { return bricks_; }
