@@ -7,9 +7,9 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "vicinity/layers/shaping_element.h"
+#include "vicinity/voxel/huge_pages.h"
 #include "vicinity/voxel/voxel_set.h"
 
 namespace vicinity {
@@ -111,15 +111,15 @@ class LayerBricks {
   BlockIndex tile_lo_, tile_hi_;  // in bricks
   BlockIndex lo_, size_;          // of the directory, in bricks: the box and a rim of one brick
   std::size_t plane_count_ = 0;
-  std::vector<std::uint32_t> directory_;  // cell -> brick
-  std::vector<std::uint32_t> cells_;      // brick -> cell
-  std::vector<std::uint32_t> full_cells_;
-  std::vector<BrickBits> reached_;  // boundary and every rank so far
-  std::vector<BrickBits> inner_;
-  std::vector<BrickBits> newest_;       // of the rank that is being given
-  std::vector<BrickBits> planes_;       // plane_count_ for each brick
-  std::vector<std::uint32_t> changed_;  // bricks with anything in newest_
-  std::vector<Frontier> frontier_;
+  HugeVector<std::uint32_t> directory_;  // cell -> brick
+  HugeVector<std::uint32_t> cells_;      // brick -> cell
+  HugeVector<std::uint32_t> full_cells_;
+  HugeVector<BrickBits> reached_;  // boundary and every rank so far
+  HugeVector<BrickBits> inner_;
+  HugeVector<BrickBits> newest_;       // of the rank that is being given
+  HugeVector<BrickBits> planes_;       // plane_count_ for each brick
+  HugeVector<std::uint32_t> changed_;  // bricks with anything in newest_
+  HugeVector<Frontier> frontier_;
 };
 
 }  // namespace vicinity
