@@ -52,7 +52,7 @@ void add(std::vector<Edge>& edges, std::uint32_t from, std::uint32_t to, int sur
 // For each vertex of the edges, one that stands for all vertices within a crack of it. Two points
 // closer than half a cell share a cell in at least one of eight grids shifted by half a cell.
 std::vector<std::uint32_t> joined_across_cracks(const std::vector<Edge>& edges,
-                                                const SlabbedMesh& mesh, double crack) {
+                                                const GridMesh& mesh, double crack) {
   std::vector<std::uint32_t> stands(mesh.vertices().size());
   std::iota(stands.begin(), stands.end(), std::uint32_t{0});
   const auto root = [&](std::uint32_t v) {
@@ -86,7 +86,7 @@ std::vector<std::uint32_t> joined_across_cracks(const std::vector<Edge>& edges,
 
 }  // namespace
 
-std::vector<OpenEdge> open_edges(const SlabbedMesh& mesh, double crack) {
+std::vector<OpenEdge> open_edges(const GridMesh& mesh, double crack) {
   std::vector<Edge> edges;
   edges.reserve(3 * mesh.triangle_count());
   for (const auto& [a, b, c] : mesh.triangles()) {

@@ -12,7 +12,7 @@
 namespace vicinity {
 
 /// Voxels of the boundary's box, not in it, where the winding number is at least one half in size.
-VoxelSet open_inner(const SlabbedMesh& mesh, const std::vector<OpenEdge>& edges,
+VoxelSet open_inner(const GridMesh& mesh, const std::vector<OpenEdge>& edges,
                     const VoxelSet& boundary);
 
 }  // namespace vicinity
