@@ -9,6 +9,7 @@
 #include <array>
 #include <optional>
 
+#include "few_voxels.h"
 #include "row_axes.h"
 #include "slab_writer.h"
 #include "slabbed_mesh.h"
@@ -46,6 +47,17 @@ class TriangleMarker {
         for (std::int32_t j = lo_.j; j <= hi.j; ++j) slab_.put(lo_.i, hi.i, j, k);
       }
       return;
+    }
+    if (std::max({hi.i - lo_.i, hi.j - lo_.j, hi.k - lo_.k}) == 1) {
+      unsigned voxels = 0;
+      if (few_voxels(corners, lo_, voxels)) {
+        // Those of the bounding box that are in the slab.
+        voxels &= hi.i == lo_.i ? 0x55u : 0xffu;
+        voxels &= hi.j == lo_.j ? 0x33u : 0xffu;
+        voxels &= (first == lo_.k ? 0x0fu : 0u) | (last > lo_.k ? 0xf0u : 0u);
+        slab_.put_cube(lo_, voxels);
+        return;
+      }
     }
     if (!axes_.set(corners, lo_, hi, margin_) || !mark_layers(first, last, hi.j - lo_.j)) {
       tracer_.trace(corners, first, last + 1);

@@ -3,17 +3,22 @@
 
 #include "vicinity/voxel/inner.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "consistent_winding.h"
 #include "free_regions.h"
+#include "grid_mesh.h"
 #include "mesh_slice.h"
 #include "open_edges.h"
 #include "open_inner.h"
@@ -23,40 +28,66 @@
 namespace vicinity {
 namespace {
 
-// Winding number of a closed mesh about the centre of a voxel that is not boundary: outward less
-// inward crossings of the line from there to x = infinity. No surface is within half a voxel of the
-// centre, so that rounding cannot move a crossing to its other side.
-int closed_winding_number(const SlabbedMesh& mesh, const VoxelIndex& v) {
-  int crossings = 0;
-  for (const std::uint32_t t : mesh.triangles_in(v.k >> 3)) {
-    const std::optional<SliceSegment> segment = slice(mesh.corners(t), v.k + 0.5);
-    if (!segment) continue;
-    const std::optional<Crossing> crossing = cross(*segment, v.j + 0.5);
-    if (crossing && crossing->x > v.i + 0.5) crossings += crossing->sign;
-  }
-  return crossings;
+// Winding numbers of a closed mesh about the centres of voxels that are not boundary: outward less
+// inward crossings of the line from there to x = infinity. No surface is within half a voxel of a
+// centre, so that rounding cannot move a crossing to its other side. One walk over the triangles,
+// each of which looks for the voxels in its layers.
+std::vector<int> closed_winding_numbers(const GridMesh& mesh,
+                                        const std::vector<VoxelIndex>& voxels) {
+  std::vector<std::size_t> by_layer(voxels.size());
+  std::iota(by_layer.begin(), by_layer.end(), std::size_t{0});
+  std::sort(by_layer.begin(), by_layer.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(voxels[a].k, a) < std::pair(voxels[b].k, b);
+  });
+  std::vector<int> numbers(voxels.size());
+  using Range = tbb::blocked_range<std::uint32_t>;
+  const auto triangles = static_cast<std::uint32_t>(mesh.triangle_count());
+  tbb::parallel_for(Range(0, triangles, 1 << 12), [&](const Range& range) {
+    for (std::uint32_t t = range.begin(); t < range.end(); ++t) {
+      const std::array<Vec3, 3> corners = mesh.corners(t);
+      const auto [low, high] = std::minmax({corners[0].z(), corners[1].z(), corners[2].z()});
+      auto at = std::partition_point(by_layer.begin(), by_layer.end(),
+                                     [&, low = low](auto v) { return voxels[v].k + 0.5 < low; });
+      for (; at != by_layer.end() && voxels[*at].k + 0.5 < high; ++at) {
+        const VoxelIndex& v = voxels[*at];
+        const std::optional<SliceSegment> segment = slice(corners, v.k + 0.5);
+        if (!segment) continue;
+        const std::optional<Crossing> crossing = cross(*segment, v.j + 0.5);
+        if (!crossing || crossing->x <= v.i + 0.5) continue;
+        std::atomic_ref(numbers[*at]).fetch_add(crossing->sign, std::memory_order_relaxed);
+      }
+    }
+  });
+  return numbers;
 }
 
 // The same from the solid angles of all triangles: slower, but nothing slips through a crack.
-int cracked_winding_number(const SlabbedMesh& mesh, const VoxelIndex& v) {
-  const Vec3 centre(v.i + 0.5, v.j + 0.5, v.k + 0.5);
-  SolidAngleSum sum;
-  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
-    const std::array<Vec3, 3> corners = mesh.corners(t);
-    sum.add(corners[0] - centre, corners[1] - centre, corners[2] - centre);
-  }
-  return static_cast<int>(std::lround(sum.value() / (4 * std::numbers::pi)));
+std::vector<int> cracked_winding_numbers(const GridMesh& mesh,
+                                         const std::vector<VoxelIndex>& voxels) {
+  std::vector<int> numbers(voxels.size());
+  tbb::parallel_for(std::size_t{0}, voxels.size(), [&](std::size_t v) {
+    const Vec3 centre(voxels[v].i + 0.5, voxels[v].j + 0.5, voxels[v].k + 0.5);
+    SolidAngleSum sum;
+    for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+      const std::array<Vec3, 3> corners = mesh.corners(t);
+      sum.add(corners[0] - centre, corners[1] - centre, corners[2] - centre);
+    }
+    numbers[v] = static_cast<int>(std::lround(sum.value() / (4 * std::numbers::pi)));
+  });
+  return numbers;
 }
 
 // Inner voxels where the winding number of a voxel is that of its whole region.
-VoxelSet closed_inner(const SlabbedMesh& mesh, const VoxelSet& boundary,
-                      int (*winding_number_at)(const SlabbedMesh&, const VoxelIndex&)) {
+VoxelSet closed_inner(const GridMesh& mesh, const VoxelSet& boundary,
+                      std::vector<int> (*winding_numbers)(const GridMesh&,
+                                                          const std::vector<VoxelIndex>&)) {
   VoxelSet inner(boundary.box());
   const FreeRegions regions(boundary);
-  std::vector<char> is_inner(regions.voxels().size());
-  tbb::parallel_for(std::size_t{1}, is_inner.size(), [&](std::size_t region) {
-    is_inner[region] = winding_number_at(mesh, regions.voxels()[region]) != 0;
-  });
+  const std::vector<int> numbers = winding_numbers(mesh, regions.voxels());
+  std::vector<char> is_inner(numbers.size());
+  for (std::size_t region = 1; region < numbers.size(); ++region) {
+    is_inner[region] = numbers[region] != 0;  // region 0 is the outside
+  }
   tbb::parallel_for(regions.slab_begin(), regions.slab_end(), [&](std::int32_t slab) {
     regions.visit_slab(
         slab, is_inner,
@@ -75,19 +106,19 @@ VoxelSet closed_inner(const SlabbedMesh& mesh, const VoxelSet& boundary,
 
 VoxelSet winding_inner(const TriangleMesh& mesh, const VoxelSet& boundary,
                        const Workspace& workspace) {
-  const SlabbedMesh as_given(mesh, workspace);
+  const GridMesh as_given(mesh, workspace);
   if (open_edges(as_given, 0).empty()) {
-    return closed_inner(as_given, boundary, closed_winding_number);
+    return closed_inner(as_given, boundary, closed_winding_numbers);
   }
   // Often a mesh is not open at all, but some of its triangles are wound the wrong way.
   const TriangleMesh turned = consistently_wound(mesh);
-  const SlabbedMesh slabbed(turned, workspace);
-  if (open_edges(slabbed, 0).empty()) {
-    return closed_inner(slabbed, boundary, closed_winding_number);
+  const GridMesh in_grid(turned, workspace);
+  if (open_edges(in_grid, 0).empty()) {
+    return closed_inner(in_grid, boundary, closed_winding_numbers);
   }
-  const std::vector<OpenEdge> edges = open_edges(slabbed, crack_vox);
-  return edges.empty() ? closed_inner(slabbed, boundary, cracked_winding_number)
-                       : open_inner(slabbed, edges, boundary);
+  const std::vector<OpenEdge> edges = open_edges(in_grid, crack_vox);
+  return edges.empty() ? closed_inner(in_grid, boundary, cracked_winding_numbers)
+                       : open_inner(in_grid, edges, boundary);
 }
 
 // Even-odd in each row: voxels whose centre is past an odd number of crossings (§4.1.3).

@@ -6,13 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-// Lanes are filled by the compiler: compiled twice on x86-64, the version that the processor knows
-// is taken when the program is loaded. Results do not depend on it, since they leave no doubt.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_THREAD__)
-#define VICINITY_FOR_THIS_PROCESSOR __attribute__((target_clones("avx2", "default")))
-#else
-#define VICINITY_FOR_THIS_PROCESSOR
-#endif
+#include "target_clones.h"
 
 namespace vicinity {
 namespace {

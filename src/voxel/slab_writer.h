@@ -25,6 +25,25 @@ class SlabWriter {
     }
   }
 
+  /// Puts the voxels of a 2 x 2 x 2 cube in whose bits 4 k + 2 j + i are set, counted from `lo`;
+  /// those that are set lie in the set's box and in the slab.
+  void put_cube(const VoxelIndex& lo, unsigned bits) {
+    if ((lo.i & 63) != 63 && (lo.j & 7) != 7) {
+      BitBlock& in = block(lo.i >> 6, lo.j >> 3);
+      for (std::int32_t row = 0; row < 4; ++row) {
+        in.words[BitBlock::row(lo.j + (row & 1), lo.k + (row >> 1))] |=
+            static_cast<std::uint64_t>((bits >> (2 * row)) & 3) << (lo.i & 63);
+      }
+      return;
+    }
+    for (std::int32_t row = 0; row < 4; ++row) {
+      const unsigned pair = (bits >> (2 * row)) & 3;
+      if (pair == 0) continue;
+      put(lo.i + (pair == 2 ? 1 : 0), lo.i + (pair == 1 ? 0 : 1), lo.j + (row & 1),
+          lo.k + (row >> 1));
+    }
+  }
+
  private:
   // The last block made stays where it is until another one is made.
   BitBlock& block(std::int32_t i, std::int32_t j) {
