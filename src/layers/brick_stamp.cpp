@@ -12,7 +12,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "vicinity/geometry/machine_clones.h"
+#include "vicinity/geometry/widest_vectors.h"
 
 namespace vicinity {
 namespace {
@@ -119,12 +119,12 @@ ElementProfiles::ElementProfiles(const ShapingElement& element) : radius(element
   }
 }
 
-VICINITY_MACHINE_CLONES
+VICINITY_WIDEST_VECTORS
 void stamp_near(const BrickBits& source, const ElementProfiles& element, BrickStamp& stamp) {
   stamp_brick<4>(source, element, stamp);
 }
 
-VICINITY_MACHINE_CLONES
+VICINITY_WIDEST_VECTORS
 void stamp_far(const BrickBits& source, const ElementProfiles& element, BrickStamp& stamp) {
   stamp_brick<8>(source, element, stamp);
 }

@@ -20,6 +20,7 @@
 
 #include "merge.h"
 #include "object_voxel_array.h"
+#include "object_work.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/layers/layer_bricks.h"
 #include "vicinity/mesh/inspection.h"
@@ -75,52 +76,9 @@ int reach_vox(const SceneObject& object) {
   return object.q * object.m + (object.layers == LayerShape::distance ? 2 : 1);
 }
 
-/// What must stay the same for an object's voxels to be kept.
-struct Identity {
-  SceneObject object;  // its coding does not matter
-  std::uintmax_t file_size = 0;
-  std::filesystem::file_time_type file_time;
-
-  explicit Identity(const SceneObject& o) : object(o) {
-    if (const auto* file = std::get_if<MeshFile>(&o.shape)) {
-      std::error_code none;  // a file that is missing is an error when it is read
-      file_size = std::filesystem::file_size(file->path, none);
-      file_time = std::filesystem::last_write_time(file->path, none);
-    }
-  }
-
-  bool operator==(const Identity& other) const {
-    const SceneObject &a = object, &b = other.object;
-    const auto same_shape = [&] {
-      if (a.shape.index() != b.shape.index()) return false;
-      if (const auto* file = std::get_if<MeshFile>(&a.shape)) {
-        const auto& its = std::get<MeshFile>(b.shape);
-        return file->path == its.path && file->units == its.units && file_size == other.file_size &&
-               file_time == other.file_time;
-      }
-      const auto &mesh = std::get<TriangleMesh>(a.shape), &its = std::get<TriangleMesh>(b.shape);
-      return mesh.triangles == its.triangles && mesh.vertices == its.vertices;
-    };
-    return a.name == b.name && a.X_WO.matrix() == b.X_WO.matrix() && a.scale == b.scale &&
-           a.m == b.m && a.q == b.q && a.layers == b.layers && a.boundary == b.boundary &&
-           a.inner == b.inner && same_shape();
-  }
-};
-
-/// One object on its way through the stages, and what is kept of it.
-struct Work {
-  explicit Work(const SceneObject& o) : object(&o), identity(o) {}
-
-  const SceneObject* object;
-  Identity identity;
-  TriangleMesh mesh;
-  MeshInspection inspection;  // in W
-  std::shared_ptr<const ObjectVoxelArray> array;
-};
-
 /// Refuses a mesh without extent, and one that no memory would hold at this voxel size: mostly a
 /// wrong unit.
-void check_usable(const Work& work, double h) {
+void check_usable(const ObjectWork& work, double h) {
   if (work.inspection.verdict == MeshInspection::Verdict::unusable) {
     throw Error({.what = "the mesh has no triangle with any extent",
                  .hint = "vicinity check, which says what is wrong with it"});
@@ -147,9 +105,9 @@ void check_usable(const Work& work, double h) {
 
 /// Bounds that hold every object with all its layers, from a multiple of the voxel size, so that a
 /// scene that grows keeps its grid.
-Box bounds_around(const std::vector<Work>& works, double h) {
+Box bounds_around(const std::vector<ObjectWork>& works, double h) {
   Box bounds;
-  for (const Work& work : works) {
+  for (const ObjectWork& work : works) {
     const Vec3 margin = Vec3::Constant(h * reach_vox(*work.object));
     const Box& box = work.inspection.bounds;
     bounds.extend(Box(box.min() - margin, box.max() + margin));
@@ -157,7 +115,7 @@ Box bounds_around(const std::vector<Work>& works, double h) {
   return {((bounds.min() / h).array().floor() * h).matrix(), bounds.max()};
 }
 
-FieldObject describe(const Work& work, double h) {
+FieldObject describe(const ObjectWork& work, double h) {
   const SceneObject& object = *work.object;
   FieldObject described{.name = object.name,
                         .layers = object.layers,
@@ -187,7 +145,7 @@ const char* words_for(InnerMethod method) {
   return "";
 }
 
-std::vector<std::string> remarks_on(const Work& work, const FieldObject& described,
+std::vector<std::string> remarks_on(const ObjectWork& work, const FieldObject& described,
                                     const Workspace& workspace) {
   const SceneObject& object = *work.object;
   std::vector<std::string> remarks;
@@ -226,7 +184,7 @@ std::vector<std::string> remarks_on(const Work& work, const FieldObject& describ
 
 /// Runs `step(work)` for every object at once. Of several errors, the first object's is thrown.
 template <class Step>
-void for_each_work(std::vector<Work>& works, Step&& step) {
+void for_each_work(std::vector<ObjectWork>& works, Step&& step) {
   std::vector<std::exception_ptr> errors(works.size());
   tbb::parallel_for(std::size_t{0}, works.size(), [&](std::size_t w) {
     try {
@@ -300,21 +258,22 @@ void share_out(double wall, const StageTimes& times, BuildReport::Seconds& secon
 
 struct FieldBuilder::Kept {
   Workspace workspace;
-  std::vector<Work> works;  // without their meshes, by name
+  std::vector<ObjectWork> works;  // without their meshes, by name
   std::vector<FieldObject> objects;
   MergedField merged;
 
   /// What is kept of an object that is the same as then; null where nothing is.
-  const Work* same(const Work& work) const {
-    const auto found = std::find_if(works.begin(), works.end(),
-                                    [&](const Work& w) { return w.identity == work.identity; });
+  const ObjectWork* same(const ObjectWork& work) const {
+    const auto found = std::find_if(works.begin(), works.end(), [&](const ObjectWork& w) {
+      return w.identity == work.identity;
+    });
     return found == works.end() ? nullptr : &*found;
   }
 
   /// Marks the regions that hold other voxels than they did, or other winners: where an object that
   /// is not the same now was or is. Nothing where all is to be merged anew.
   std::optional<std::vector<char>> changed_regions(
-      const Workspace& now, const std::vector<Work>& new_works,
+      const Workspace& now, const std::vector<ObjectWork>& new_works,
       const std::vector<FieldObject>& new_objects) const;
 };
 
@@ -345,7 +304,7 @@ void mark(const ObjectVoxelArray& array, const VoxelIndex& dims, std::vector<cha
 }  // namespace
 
 std::optional<std::vector<char>> FieldBuilder::Kept::changed_regions(
-    const Workspace& now, const std::vector<Work>& new_works,
+    const Workspace& now, const std::vector<ObjectWork>& new_works,
     const std::vector<FieldObject>& new_objects) const {
   const VoxelIndex& d = now.dims;
   // Codes of voxels are those of the earlier field only where the table of codes is the same.
@@ -390,23 +349,23 @@ BuildResult FieldBuilder::build_in_arena(const Scene& scene, const BuildOptions&
   Seconds all, stage;
   // Refuses a voxel size that is none before any mesh is read.
   Workspace workspace = Workspace::covering(Box(Vec3::Zero(), Vec3::Zero()), scene.voxel_size);
-  std::vector<Work> works;
+  std::vector<ObjectWork> works;
   for (const SceneObject* object : sorted_objects(scene)) works.emplace_back(*object);
   const double h = scene.voxel_size;
   BuildReport report;
   Progress progress(options);
-  const auto index_of = [&](const Work& work) {
+  const auto index_of = [&](const ObjectWork& work) {
     return static_cast<std::size_t>(&work - works.data());
   };
 
   progress.start("read", 0.1, works.size());
-  const auto read = [&](Work& work) {
+  const auto read = [&](ObjectWork& work) {
     work.mesh = read_and_place(*work.object);
     work.inspection = inspect(work.mesh);
     check_usable(work, h);
   };
-  for_each_work(works, [&](Work& work) {
-    const Work* same = kept_ ? kept_->same(work) : nullptr;
+  for_each_work(works, [&](ObjectWork& work) {
+    const ObjectWork* same = kept_ ? kept_->same(work) : nullptr;
     if (same != nullptr) {
       work.inspection = same->inspection;
       work.array = same->array;
@@ -417,7 +376,7 @@ BuildResult FieldBuilder::build_in_arena(const Scene& scene, const BuildOptions&
   });
   workspace = Workspace::covering(scene.bounds.value_or(bounds_around(works, h)), h);
   if (kept_ && !same_grid(kept_->workspace, workspace)) {
-    for_each_work(works, [&](Work& work) {
+    for_each_work(works, [&](ObjectWork& work) {
       if (std::exchange(work.array, nullptr)) read(work);
     });
   }
@@ -425,9 +384,9 @@ BuildResult FieldBuilder::build_in_arena(const Scene& scene, const BuildOptions&
 
   progress.start("rank", 0.7, works.size());
   StageTimes times;
-  report.objects_ranked = static_cast<int>(
-      std::count_if(works.begin(), works.end(), [](const Work& w) { return w.array == nullptr; }));
-  for_each_work(works, [&](Work& work) {
+  report.objects_ranked = static_cast<int>(std::count_if(
+      works.begin(), works.end(), [](const ObjectWork& w) { return w.array == nullptr; }));
+  for_each_work(works, [&](ObjectWork& work) {
     const auto onward = [&](double done) { progress.onward(index_of(work), done); };
     if (!work.array) {
       work.array = std::make_shared<const ObjectVoxelArray>(
@@ -441,7 +400,7 @@ BuildResult FieldBuilder::build_in_arena(const Scene& scene, const BuildOptions&
   progress.start("merge", 0.2, 1);
   std::vector<FieldObject> objects;
   std::vector<const ObjectVoxelArray*> arrays;
-  for (const Work& work : works) {
+  for (const ObjectWork& work : works) {
     objects.push_back(describe(work, h));
     for (auto& r : remarks_on(work, objects.back(), workspace)) report.remarks.push_back(r);
     arrays.push_back(work.array.get());
@@ -458,7 +417,7 @@ BuildResult FieldBuilder::build_in_arena(const Scene& scene, const BuildOptions&
   report.inner = field.voxel_counts().inner;
   report.neighbour = field.voxel_counts().neighbour;
   report.threads = tbb::this_task_arena::max_concurrency();
-  for (Work& work : works) work.object = nullptr;  // the scene is the caller's
+  for (ObjectWork& work : works) work.object = nullptr;  // the scene is the caller's
   kept_ = std::make_unique<Kept>(
       Kept{workspace, std::move(works), std::move(objects), std::move(merged)});
   report.seconds.total = all.since_last();

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "packed_brick.h"
-#include "vicinity/geometry/machine_clones.h"
+#include "vicinity/geometry/widest_vectors.h"
 
 namespace vicinity {
 namespace {
@@ -30,7 +30,7 @@ constexpr std::uint64_t gather_4(std::uint64_t w) noexcept {
 }
 
 /// Planes of the indices of a brick, from 1, 2 or 4 bits a voxel (width 0, 1 or 2).
-VICINITY_MACHINE_CLONES
+VICINITY_WIDEST_VECTORS
 void unpack(const std::byte* brick, unsigned width, std::array<BrickBits, 4>& planes) noexcept {
   std::array<std::uint64_t, 32> words;
   std::memcpy(words.data(), brick, std::size_t{64} << width);
@@ -52,7 +52,7 @@ void unpack(const std::byte* brick, unsigned width, std::array<BrickBits, 4>& pl
 }
 
 /// Splits a brick by one plane after another, highest first, and keeps what is not empty.
-VICINITY_MACHINE_CLONES
+VICINITY_WIDEST_VECTORS
 void split_by_planes(const BrickBits* planes, std::size_t plane_count, CodeMasks& found) noexcept {
   BrickBits all;
   all.words.fill(~std::uint64_t{0});

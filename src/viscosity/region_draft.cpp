@@ -12,7 +12,7 @@
 #include "code_masks.h"
 #include "packed_brick.h"
 #include "sparse_layer.h"
-#include "vicinity/geometry/machine_clones.h"
+#include "vicinity/geometry/widest_vectors.h"
 #include "vicinity/viscosity/field_image.h"
 
 namespace vicinity {
@@ -65,7 +65,7 @@ constexpr std::uint64_t spread_4(std::uint64_t w) noexcept {
 
 /// Packs the masks of 2 to 64 codes.
 /// @return  the width
-VICINITY_MACHINE_CLONES
+VICINITY_WIDEST_VECTORS
 unsigned pack(const CodeMasks& found, PackedBrick& brick) noexcept {
   const unsigned width = width_for(found.count());
   std::array<BrickBits, 6> planes{};  // bit b of every voxel's index

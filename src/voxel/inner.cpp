@@ -3,13 +3,17 @@
 
 #include "vicinity/voxel/inner.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "consistent_winding.h"
@@ -38,15 +42,43 @@ int closed_winding_number(const SlabbedMesh& mesh, const VoxelIndex& v) {
   return crossings;
 }
 
+// The same of many voxels, for a mesh that is not listed by slabs: one walk over the triangles,
+// each of which looks for the voxels in its layers.
+std::vector<int> closed_winding_numbers(const GridMesh& mesh,
+                                        const std::vector<VoxelIndex>& voxels) {
+  std::vector<std::size_t> by_layer(voxels.size());
+  std::iota(by_layer.begin(), by_layer.end(), std::size_t{0});
+  std::sort(by_layer.begin(), by_layer.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(voxels[a].k, a) < std::pair(voxels[b].k, b);
+  });
+  std::vector<int> numbers(voxels.size());
+  using Range = tbb::blocked_range<std::uint32_t>;
+  const auto triangles = static_cast<std::uint32_t>(mesh.triangle_count());
+  tbb::parallel_for(Range(0, triangles, 1 << 12), [&](const Range& range) {
+    for (std::uint32_t t = range.begin(); t < range.end(); ++t) {
+      const std::array<Vec3, 3> corners = mesh.corners(t);
+      const auto [low, high] = std::minmax({corners[0].z(), corners[1].z(), corners[2].z()});
+      auto at = std::partition_point(by_layer.begin(), by_layer.end(),
+                                     [&, low = low](auto v) { return voxels[v].k + 0.5 < low; });
+      for (; at != by_layer.end() && voxels[*at].k + 0.5 < high; ++at) {
+        const VoxelIndex& v = voxels[*at];
+        const std::optional<SliceSegment> segment = slice(corners, v.k + 0.5);
+        if (!segment) continue;
+        const std::optional<Crossing> crossing = cross(*segment, v.j + 0.5);
+        if (!crossing || crossing->x <= v.i + 0.5) continue;
+        std::atomic_ref(numbers[*at]).fetch_add(crossing->sign, std::memory_order_relaxed);
+      }
+    }
+  });
+  return numbers;
+}
+
 // Inner voxels where the winding number of a voxel is that of its whole region.
-template <class IsInner>
-VoxelSet closed_inner(const VoxelSet& boundary, IsInner&& is_inner_at) {
+template <class AreInner>
+VoxelSet closed_inner(const VoxelSet& boundary, AreInner&& are_inner) {
   VoxelSet inner(boundary.box());
   const FreeRegions regions(boundary);
-  std::vector<char> is_inner(regions.voxels().size());
-  tbb::parallel_for(std::size_t{0}, is_inner.size(), [&](std::size_t region) {
-    is_inner[region] = is_inner_at(regions.voxels()[region]);
-  });
+  const std::vector<char> is_inner = are_inner(regions.voxels());
   tbb::parallel_for(regions.slab_begin(), regions.slab_end(), [&](std::int32_t slab) {
     regions.visit_slab(
         slab, is_inner,
@@ -104,14 +136,20 @@ VoxelSet raster_inner(const SlabbedMesh& mesh, const VoxelSet& boundary) {
 
 }  // namespace
 
-Inside::Inside(const TriangleMesh& mesh, const SlabbedMesh& as_given, const Workspace& workspace,
-               InnerMethod method)
-    : method_(method), mesh_(&as_given) {
+Inside::Inside(const TriangleMesh& mesh, const GridMesh& as_given, const SlabbedMesh* slabs,
+               const Workspace& workspace, InnerMethod method)
+    : method_(method), mesh_(&as_given), slabs_(slabs) {
   if (method != InnerMethod::winding || open_edges(as_given, 0).empty()) return;
   // Often a mesh is not open at all, but some of its triangles are wound the wrong way.
   turned_ = consistently_wound(mesh);
-  turned_slabs_ = std::make_unique<const SlabbedMesh>(turned_, workspace);
-  mesh_ = turned_slabs_.get();
+  if (slabs_ != nullptr) {
+    auto slabbed = std::make_unique<const SlabbedMesh>(turned_, workspace);
+    slabs_ = slabbed.get();
+    turned_on_grid_ = std::move(slabbed);
+  } else {
+    turned_on_grid_ = std::make_unique<const GridMesh>(turned_, workspace);
+  }
+  mesh_ = turned_on_grid_.get();
   if (open_edges(*mesh_, 0).empty()) return;
   const std::vector<OpenEdge> edges = open_edges(*mesh_, crack_vox);
   is_open_ = !edges.empty();
@@ -120,17 +158,28 @@ Inside::Inside(const TriangleMesh& mesh, const SlabbedMesh& as_given, const Work
 
 Inside::~Inside() = default;
 
-bool Inside::is_inner(const VoxelIndex& v) const {
-  return by_solid_angle_ ? by_solid_angle_->is_inner(v) : closed_winding_number(*mesh_, v) != 0;
+std::vector<char> Inside::are_inner(const std::vector<VoxelIndex>& voxels) const {
+  std::vector<char> inner(voxels.size());
+  if (by_solid_angle_ == nullptr && slabs_ == nullptr) {
+    const std::vector<int> numbers = closed_winding_numbers(*mesh_, voxels);
+    for (std::size_t v = 0; v < voxels.size(); ++v) inner[v] = numbers[v] != 0;
+    return inner;
+  }
+  tbb::parallel_for(std::size_t{0}, voxels.size(), [&](std::size_t v) {
+    inner[v] = by_solid_angle_ ? by_solid_angle_->is_inner(voxels[v])
+                               : closed_winding_number(*slabs_, voxels[v]) != 0;
+  });
+  return inner;
 }
 
 VoxelSet Inside::inner(const VoxelSet& boundary) const {
   switch (method_) {
     case InnerMethod::winding:
       if (is_open_) return by_solid_angle_->inner(boundary);
-      return closed_inner(boundary, [this](const VoxelIndex& v) { return is_inner(v); });
+      return closed_inner(boundary,
+                          [this](const std::vector<VoxelIndex>& v) { return are_inner(v); });
     case InnerMethod::raster:
-      return raster_inner(*mesh_, boundary);
+      return raster_inner(*slabs_, boundary);
     case InnerMethod::none:
       break;
   }
@@ -140,7 +189,7 @@ VoxelSet Inside::inner(const VoxelSet& boundary) const {
 std::optional<bool> Inside::throughout(const VoxelBox& box) const {
   switch (method_) {
     case InnerMethod::winding:
-      return is_open_ ? by_solid_angle_->throughout(box) : is_inner(box.lo);
+      return is_open_ ? by_solid_angle_->throughout(box) : are_inner({box.lo})[0] != 0;
     case InnerMethod::raster:
       return std::nullopt;
     case InnerMethod::none:
@@ -152,8 +201,11 @@ std::optional<bool> Inside::throughout(const VoxelBox& box) const {
 VoxelSet inner_voxels(const TriangleMesh& mesh, const VoxelSet& boundary,
                       const Workspace& workspace, InnerMethod method) {
   if (mesh.triangles.empty()) return VoxelSet(boundary.box());
-  const SlabbedMesh slabbed(mesh, workspace);
-  return Inside(mesh, slabbed, workspace, method).inner(boundary);
+  if (method == InnerMethod::raster) {
+    const SlabbedMesh slabbed(mesh, workspace);
+    return Inside(mesh, slabbed, &slabbed, workspace, method).inner(boundary);
+  }
+  return Inside(mesh, GridMesh(mesh, workspace), nullptr, workspace, method).inner(boundary);
 }
 
 double winding_number(const TriangleMesh& mesh, const Vec3& p_W) {

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "open_inner.h"
 #include "slabbed_mesh.h"
@@ -18,8 +19,11 @@ namespace vicinity {
 class Inside {
  public:
   /// @param as_given  the whole of `mesh` on the grid; it must stay alive
-  Inside(const TriangleMesh& mesh, const SlabbedMesh& as_given, const Workspace& workspace,
-         InnerMethod method);
+  /// @param slabs     the same with its triangles listed: worth its while to ask for many boxes,
+  /// and
+  ///                  what `raster` needs. Null to ask once.
+  Inside(const TriangleMesh& mesh, const GridMesh& as_given, const SlabbedMesh* slabs,
+         const Workspace& workspace, InnerMethod method);
   ~Inside();
 
   /// Inner voxels of the boundary's box, which need not hold the whole object: the surface within
@@ -31,12 +35,13 @@ class Inside {
   std::optional<bool> throughout(const VoxelBox& box) const;
 
  private:
-  bool is_inner(const VoxelIndex& v) const;
+  std::vector<char> are_inner(const std::vector<VoxelIndex>& voxels) const;
 
   InnerMethod method_;
-  const SlabbedMesh* mesh_;
+  const GridMesh* mesh_;
+  const SlabbedMesh* slabs_;
   TriangleMesh turned_;  // where some triangles are wound the wrong way
-  std::unique_ptr<const SlabbedMesh> turned_slabs_;
+  std::unique_ptr<const GridMesh> turned_on_grid_;
   bool is_open_ = false;
   std::unique_ptr<const OpenInner> by_solid_angle_;  // where not every edge has two sides
 };

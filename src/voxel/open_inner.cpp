@@ -50,7 +50,7 @@ constexpr int few = 12;
 // Long open edges are cut, so that nodes stay small.
 constexpr double edge_piece_vox = 8;
 
-std::vector<MomentPiece> surface_pieces(const SlabbedMesh& mesh) {
+std::vector<MomentPiece> surface_pieces(const GridMesh& mesh) {
   std::vector<MomentPiece> pieces(mesh.triangle_count());
   for (std::uint32_t t = 0; t < pieces.size(); ++t) {
     // From the lowest corner on, so that a turned triangle gives the same piece to the last bit.
@@ -92,7 +92,7 @@ Vec3 centre_of(const VoxelIndex& v) { return {v.i + 0.5, v.j + 0.5, v.k + 0.5}; 
 
 class OpenWinding {
  public:
-  OpenWinding(const SlabbedMesh& mesh, const std::vector<OpenEdge>& edges)
+  OpenWinding(const GridMesh& mesh, const std::vector<OpenEdge>& edges)
       : mesh_(mesh), surface_(surface_pieces(mesh)), edges_(edge_pieces(edges)) {}
 
   // Winding number about p; nodes act as a whole from `radii` of their radii.
@@ -154,7 +154,7 @@ class OpenWinding {
   }
 
  private:
-  const SlabbedMesh& mesh_;
+  const GridMesh& mesh_;
   MomentTree surface_, edges_;
 };
 
@@ -285,7 +285,7 @@ void decide_run(const OpenWinding& winding, const BlockIndex& b, std::int32_t bl
 
 }  // namespace
 
-OpenInner::OpenInner(const SlabbedMesh& mesh, const std::vector<OpenEdge>& edges)
+OpenInner::OpenInner(const GridMesh& mesh, const std::vector<OpenEdge>& edges)
     : winding_(std::make_unique<const OpenWinding>(mesh, edges)) {}
 
 OpenInner::~OpenInner() = default;

@@ -18,7 +18,7 @@ class OpenWinding;
 /// What it takes to decide voxels of an open mesh, prepared once. The mesh must stay alive.
 class OpenInner {
  public:
-  OpenInner(const SlabbedMesh& mesh, const std::vector<OpenEdge>& edges);
+  OpenInner(const GridMesh& mesh, const std::vector<OpenEdge>& edges);
   ~OpenInner();
 
   /// Voxels of the boundary's box, not in it, where the winding number is at least one half in

@@ -7,90 +7,65 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <numeric>
-#include <ranges>
-#include <string>
-
-#include "vicinity/geometry/error.h"
 
 namespace vicinity {
-namespace {
 
-// As far as indices may go: far enough from 2^31 that boxes can grow, and where a double still
-// resolves 2^-22 of a voxel.
-constexpr double farthest_index = 1 << 30;
-
-// As Workspace::covering() allows.
-constexpr std::int32_t most_per_axis = 1 << 20;
-
-}  // namespace
-
+// A counting sort by slab. Each piece of the mesh counts on its own, so that all pieces can then
+// write at once, each to its own places, in the order of the mesh.
 SlabbedMesh::SlabbedMesh(const TriangleMesh& mesh, const Workspace& workspace)
-    : triangles_(mesh.triangles) {
-  const auto vertices = std::make_shared<std::vector<Vec3>>(mesh.vertices.size());
-  vertices_ = vertices;
+    : GridMesh(mesh, workspace) {
   if (mesh.triangles.empty()) return;
-  tbb::parallel_for(std::size_t{0}, vertices->size(),
-                    [&](std::size_t v) { (*vertices)[v] = workspace.to_grid(mesh.vertices[v]); });
-
-  Box bounds;
-  for (const auto& triangle : triangles_) {
-    for (const std::uint32_t corner : triangle) {
-      const Vec3& p = (*vertices)[corner];
-      if (!p.allFinite()) {
-        throw Error({.where = "mesh",
-                     .what = "a vertex is not a finite number of voxels from the origin",
-                     .expected = "finite coordinates"});
-      }
-      bounds.extend(p);
+  const std::size_t triangles_per_piece = 1 << 14;
+  const auto slabs = static_cast<std::size_t>(slab_end() - slab_begin());
+  // No more counters than triangles, however many slabs there are.
+  const std::size_t pieces =
+      std::clamp<std::size_t>(triangle_count() / std::max(slabs, triangles_per_piece), 1, 64);
+  const auto first_of = [&](std::size_t piece) { return triangle_count() * piece / pieces; };
+  const auto visit = [&](std::size_t piece, auto&& entry) {
+    for (std::size_t t = first_of(piece); t < first_of(piece + 1); ++t) {
+      const auto& [a, b, c] = triangles()[t];
+      const auto [low, high] =
+          std::minmax({vertices()[a].z(), vertices()[b].z(), vertices()[c].z()});
+      const auto last = static_cast<std::size_t>((floor_index(high) >> 3) - slab_begin());
+      auto s = static_cast<std::size_t>((floor_index(low) >> 3) - slab_begin());
+      for (; s <= last; ++s) entry(s, static_cast<std::uint32_t>(t));
     }
+  };
+  std::vector<std::vector<std::size_t>> next(pieces);
+  tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+    next[piece].resize(slabs);
+    visit(piece, [&](std::size_t slab, std::uint32_t) { ++next[piece][slab]; });
+  });
+  starts_.resize(slabs + 1);
+  for (std::size_t slab = 0; slab < slabs; ++slab) {
+    std::size_t at = starts_[slab];
+    for (std::vector<std::size_t>& counted : next) {
+      const std::size_t count = counted[slab];
+      counted[slab] = at;
+      at += count;
+    }
+    starts_[slab + 1] = at;
   }
-  reach_ = std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
-  const double longest = bounds.sizes().maxCoeff();
-  if (reach_ > farthest_index || longest > most_per_axis - 1) {
-    throw Error({.where = "mesh",
-                 .what = "too large for this voxel size",
-                 .found = std::to_string(longest) + " voxels along its longest side, reaching " +
-                          std::to_string(reach_) + " voxels from the origin",
-                 .expected = "at most 1048576 voxels along each axis",
-                 .hint = "larger voxels, or check the unit of the mesh"});
-  }
-  box_ = {
-      {floor_index(bounds.min().x()), floor_index(bounds.min().y()), floor_index(bounds.min().z())},
-      {floor_index(bounds.max().x()) + 1, floor_index(bounds.max().y()) + 1,
-       floor_index(bounds.max().z()) + 1}};
-  list(std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(triangles_.size())));
+  listed_.resize(starts_.back());
+  tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+    visit(piece, [&](std::size_t slab, std::uint32_t t) { listed_[next[piece][slab]++] = t; });
+  });
 }
 
-SlabbedMesh SlabbedMesh::part(std::span<const std::uint32_t> listed, const VoxelBox& within) const {
-  SlabbedMesh part;
-  part.triangles_ = triangles_;
-  part.vertices_ = vertices_;
-  part.reach_ = reach_;
-  part.box_ = box_.within(within);
-  if (!part.box_.empty()) part.list(listed);
-  return part;
-}
-
-std::vector<std::uint32_t> SlabbedMesh::triangles_listed() const {
-  std::vector<std::uint32_t> triangles = listed_;
-  std::sort(triangles.begin(), triangles.end());
-  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-  return triangles;
-}
-
-template <class Indices>
-void SlabbedMesh::list(const Indices& triangles) {
-  const std::int32_t first_slab = slab_begin(), slabs = slab_end() - first_slab;
+SlabbedMesh::SlabbedMesh(const GridMesh& whole, std::span<const std::uint32_t> triangles,
+                         const VoxelBox& within)
+    : GridMesh(whole) {
+  cut(within);
+  if (box().empty()) return;
+  const std::int32_t slabs = slab_end() - slab_begin();
   const auto slabs_of = [&](std::uint32_t t) {
-    const auto& [a, b, c] = triangles_[t];
-    const auto [low, high] =
-        std::minmax({(*vertices_)[a].z(), (*vertices_)[b].z(), (*vertices_)[c].z()});
-    const std::int32_t first = (floor_index(low) >> 3) - first_slab;
-    const std::int32_t last = (floor_index(high) >> 3) - first_slab;
+    const std::array<Vec3, 3> corners = this->corners(t);
+    const auto [low, high] = std::minmax({corners[0].z(), corners[1].z(), corners[2].z()});
+    const std::int32_t first = (floor_index(low) >> 3) - slab_begin();
+    const std::int32_t end = (floor_index(high) >> 3) - slab_begin() + 1;
     return std::array{static_cast<std::size_t>(std::max(first, 0)),
-                      static_cast<std::size_t>(std::clamp(last + 1, 0, slabs))};
+                      static_cast<std::size_t>(std::clamp(end, 0, slabs))};
   };
   starts_.resize(static_cast<std::size_t>(slabs) + 1);
   for (const std::uint32_t t : triangles) {
@@ -104,6 +79,13 @@ void SlabbedMesh::list(const Indices& triangles) {
     const auto [first, end] = slabs_of(t);
     for (std::size_t s = first; s < end; ++s) listed_[next[s]++] = t;
   }
+}
+
+std::vector<std::uint32_t> SlabbedMesh::triangles_listed() const {
+  std::vector<std::uint32_t> triangles = listed_;
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  return triangles;
 }
 
 }  // namespace vicinity

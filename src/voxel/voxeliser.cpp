@@ -15,7 +15,7 @@ struct Voxeliser::Prepared {
            InnerMethod inner)
       : slabbed(mesh, workspace),
         bins(slabbed),
-        inside(mesh, slabbed, workspace, inner),
+        inside(mesh, slabbed, &slabbed, workspace, inner),
         boundary_method(boundary) {}
 
   SlabbedMesh slabbed;
@@ -37,7 +37,7 @@ const VoxelBox& Voxeliser::box() const noexcept { return prepared_->slabbed.box(
 VoxelSet Voxeliser::boundary(const VoxelBox& box) const {
   const std::vector<std::uint32_t> near = prepared_->bins.near(box);
   if (near.empty()) return VoxelSet(prepared_->slabbed.box().within(box));
-  return surface_voxels(prepared_->slabbed.part(near, box), prepared_->boundary_method);
+  return surface_voxels(SlabbedMesh(prepared_->slabbed, near, box), prepared_->boundary_method);
 }
 
 VoxelSet Voxeliser::inner(const VoxelSet& boundary) const {
