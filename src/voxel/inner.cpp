@@ -92,9 +92,9 @@ VoxelSet closed_inner(const GridMesh& mesh, const VoxelSet& boundary,
     regions.visit_slab(
         slab, is_inner,
         [&](std::int32_t i_begin, std::int32_t i_end, std::int32_t j) {
-          BitBlock full;
-          full.words.fill(~std::uint64_t{0});
-          for (std::int32_t i = i_begin; i < i_end; ++i) inner.blocks().make({i, j, slab}) = full;
+          for (std::int32_t i = i_begin; i < i_end; ++i) {
+            inner.blocks().make({i, j, slab}).words.fill(~std::uint64_t{0});
+          }
         },
         [&](const BlockIndex& b, const BitBlock& part) {
           BitBlock& block = inner.blocks().make(b);
