@@ -84,8 +84,7 @@ VoxelSet closed_inner(const VoxelSet& boundary, AreInner&& are_inner) {
         slab, is_inner,
         [&](std::int32_t i_begin, std::int32_t i_end, std::int32_t j) {
           for (std::int32_t i = i_begin; i < i_end; ++i) {
-            const BlockIndex b{i, j, slab};
-            inner.blocks().make(b) = block_of_box(b, inner.box());
+            inner.blocks().make({i, j, slab}).words.fill(~std::uint64_t{0});
           }
         },
         [&](const BlockIndex& b, const BitBlock& part) {

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -148,6 +149,51 @@ TEST(StlFile, WeldsAsAMapOfExactCoordinatesWouldInOrderOfFirstAppearance) {
       for (const double x : v) EXPECT_FALSE(x == 0 && std::signbit(x));
     }
   }
+}
+
+TEST(StlFile, AnAsciiFileReadInPartsIsTheSameMeshAsItsTrianglesInBinary) {
+  const ScratchFolder folder;
+  const auto triangles = corners_of(primitive::torus(0.7, 0.3, 200));
+  const std::string text = ascii_stl(triangles);
+  ASSERT_GT(text.size(), 4u << 20);
+  const TriangleMesh binary = read_stl(folder.file("b.stl", binary_stl(triangles)));
+  // One solid; two, the second of which begins somewhere in the middle; one with names to trip
+  // over.
+  std::string two = text;
+  two.insert(two.find("facet", two.size() / 2), "endsolid a\nsolid facet\n");
+  const std::string named = "solid a\n" + text.substr(text.find('\n') + 1);
+  std::string carriage_returns = text;
+  std::replace(carriage_returns.begin(), carriage_returns.end(), '\n', '\r');
+  for (const std::string& bytes : {text, two, named, carriage_returns}) {
+    const TriangleMesh ascii = read_stl(folder.file("a.stl", bytes));
+    ASSERT_EQ(ascii.triangles, binary.triangles);
+    ASSERT_EQ(ascii.vertices.size(), binary.vertices.size());
+    for (std::size_t i = 0; i < ascii.vertices.size(); ++i) {
+      ASSERT_EQ(ascii.vertices[i].cast<float>(), binary.vertices[i].cast<float>());
+    }
+  }
+}
+
+TEST(StlFile, ARefusalNamesTheLineHoweverFarDownALargeFileItIs) {
+  const ScratchFolder folder;
+  const std::string text = ascii_stl(corners_of(primitive::torus(0.7, 0.3, 200)));
+  for (const double where : {0.1, 0.5, 0.9}) {
+    std::string bad = text;
+    const std::size_t at =
+        bad.find("vertex", static_cast<std::size_t>(where * static_cast<double>(text.size())));
+    bad.replace(at, 6, "vortex");
+    const auto line =
+        1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    EXPECT_THAT(refusal(folder.file("bad.stl", bad)),
+                ::testing::AllOf(HasSubstr(fmt::format("line {}", line)),
+                                 HasSubstr("found \"vortex\""), HasSubstr("expected \"vertex\"")));
+    EXPECT_THAT(refusal(folder.file("cut.stl", text.substr(0, at))),
+                ::testing::AllOf(HasSubstr(fmt::format("line {}", line)), HasSubstr("cut short")));
+  }
+  std::string no_end = text.substr(0, text.rfind("endsolid"));
+  EXPECT_THAT(refusal(folder.file("cut.stl", no_end)), HasSubstr("the file is cut short"));
+  EXPECT_THAT(refusal(folder.file("blank.stl", "solid" + std::string(3u << 20, '\n'))),
+              HasSubstr("cut short"));
 }
 
 TEST(StlFile, CountsTheNormalsThatAreZero) {
