@@ -37,12 +37,13 @@ double seconds_of_children() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// A build in a process of its own, so that its memory is its own.
+/// A build in a process of its own, so that its memory is its own. The shell forks for it, and does
+/// not become it: a process inherits the peak memory of what it was before.
 Build build(const LargeScene& scene, double h, const std::filesystem::path& scratch) {
   const auto field = scratch / "field.vicinity";
   const std::string command =
-      fmt::format("'{}' build {} --voxel-size {} -o '{}' --json 2>/dev/null", VICINITY_PROGRAM,
-                  scene.arguments, h, field.string());
+      fmt::format("'{}' build {} --voxel-size {} -o '{}' --json 2>/dev/null; exit $?",
+                  VICINITY_PROGRAM, scene.arguments, h, field.string());
   std::fprintf(stderr, "  %s at %g mm\n", scene.name.c_str(), 1000 * h);
   std::string text;
   const double before = seconds_of_children();

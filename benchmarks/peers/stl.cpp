@@ -84,11 +84,12 @@ double peak_bytes() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// Peak memory of reading, from a process of its own.
+/// Peak memory of reading, from a process of its own that the shell forks for: one that the shell
+/// became would inherit our own peak.
 double memory_of_reading(const std::filesystem::path& path) {
   const auto program = std::filesystem::read_symlink("/proc/self/exe");
   const std::string command =
-      fmt::format("'{}' --memory-of-reading '{}'", program.string(), path.string());
+      fmt::format("'{}' --memory-of-reading '{}'; exit $?", program.string(), path.string());
   double bytes = -1;
   if (FILE* const pipe = popen(command.c_str(), "r")) {
     if (std::fscanf(pipe, "%lf", &bytes) != 1) bytes = -1;
