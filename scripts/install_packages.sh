@@ -21,8 +21,12 @@ packages=(
   libgtest-dev libgmock-dev          # tests
   liburdfdom-dev liborocos-kdl-dev   # tests: robots and kinematics by another route
 )
-if [[ ${1:-} == --benchmarks ]]; then
+if [[ ${1:-} == --benchmarks || ${1:-} == --peers ]]; then
   packages+=(libbenchmark-dev)
+fi
+if [[ ${1:-} == --peers ]]; then
+  # What scripts/bench.sh measures us beside: 300 MB.
+  packages+=(libnanovdb-dev libfcl-dev libcgal-dev liboctomap-dev libdynamicedt3d-dev python3-scipy)
 fi
 
 missing=()

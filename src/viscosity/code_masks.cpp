@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstring>
 
-#include "packed_brick.h"
+#include "vicinity/viscosity/packed_brick.h"
 #include "vicinity/geometry/widest_vectors.h"
 
 namespace vicinity {

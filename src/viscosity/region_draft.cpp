@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "code_masks.h"
-#include "packed_brick.h"
+#include "vicinity/viscosity/packed_brick.h"
 #include "sparse_layer.h"
 #include "vicinity/geometry/widest_vectors.h"
 #include "vicinity/viscosity/field_image.h"

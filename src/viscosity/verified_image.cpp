@@ -13,7 +13,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "packed_brick.h"
+#include "vicinity/viscosity/packed_brick.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/viscosity/field_image.h"
 

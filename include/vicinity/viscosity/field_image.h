@@ -56,23 +56,6 @@ struct FieldHeader {
 };
 static_assert(sizeof(FieldHeader) == 320);
 
-/// A reference of 32 bits: either uniform, the value of every voxel below it, or the number of what
-/// lies below it. The number of a brick of codes counts units of 8 bytes, and the log2 of its bits
-/// per voxel (0..4) stands above it; packed codes of less than 16 bits index the table behind them.
-struct FieldReference {
-  static constexpr std::uint32_t uniform_bit = std::uint32_t{1} << 31;
-  static constexpr int width_shift = 28;
-  static constexpr std::uint32_t number_mask = (std::uint32_t{1} << width_shift) - 1;
-  static constexpr std::size_t brick_unit = 8;  ///< [bytes]
-
-  static constexpr std::uint32_t uniform(std::uint16_t value) noexcept {
-    return uniform_bit | value;
-  }
-  static constexpr bool is_uniform(std::uint32_t reference) noexcept {
-    return (reference & uniform_bit) != 0;
-  }
-};
-
 /// Stored where a voxel keeps no distance.
 inline constexpr std::uint16_t no_distance = 0xFFFF;
 

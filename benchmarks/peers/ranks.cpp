@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "layers/triple_loop.h"
+#include "named_scenes.h"
+#include "peers/exact_transform.h"
+#include "peers/groups.h"
+#include "peers/openvdb_peer.h"
+#include "vicinity/layers/distance_layers.h"
+#include "vicinity/layers/ranked_neighbours.h"
+#include "vicinity/voxel/boundary.h"
+#include "vicinity/voxel/inner.h"
+
+namespace vicinity::peers {
+namespace {
+
+using benchmarks::layers_m;
+using benchmarks::layers_q;
+
+template <class Do>
+std::function<void()> in_threads(int threads, Do&& what) {
+  return [threads, what] {
+    tbb::task_arena arena(threads);
+    arena.execute(what);
+  };
+}
+
+/// How many bricks of 8 x 8 x 8 the layers touch.
+std::size_t touched_bricks(const RankedNeighbours& layers) {
+  std::set<std::tuple<int, int, int>> bricks;
+  for (const VoxelSet& rank : layers.ranks) {
+    rank.blocks().for_each([&](const BlockIndex& b, const BitBlock& block) {
+      for (int slot = 0; slot < 8; ++slot) {
+        std::uint64_t any = 0;
+        for (const std::uint64_t word : block.words) any |= word >> (8 * slot) & 0xFF;
+        if (any != 0) bricks.insert({b.i * 8 + slot, b.j, b.k});
+      }
+    });
+  }
+  return bricks.size();
+}
+
+/// Takes memory for one byte per voxel of so many bricks and writes it once: what no way of making
+/// ranks can do without.
+void write_bricks(std::size_t bricks) {
+  constexpr std::size_t brick = 512;
+  const std::unique_ptr<std::byte[]> bytes(new std::byte[bricks * brick]);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bricks, 256), [&](const auto& range) {
+    for (std::size_t b = range.begin(); b < range.end(); ++b) {
+      std::memset(&bytes[b * brick], static_cast<int>(b & 7), brick);
+    }
+  });
+  // The compiler must believe that somebody reads it.
+  asm volatile("" : : "r"(bytes.get()) : "memory");
+}
+
+std::vector<std::uint8_t> dense(const VoxelSet& boundary, const Workspace& workspace) {
+  const VoxelIndex d = workspace.dims;
+  std::vector<std::uint8_t> set(static_cast<std::size_t>(d.i) * static_cast<std::size_t>(d.j) *
+                                static_cast<std::size_t>(d.k));
+  boundary.for_each([&](const VoxelIndex& v) {
+    if (!workspace.box().contains(v)) return;
+    set[(static_cast<std::size_t>(v.k) * static_cast<std::size_t>(d.j) +
+         static_cast<std::size_t>(v.j)) *
+            static_cast<std::size_t>(d.i) +
+        static_cast<std::size_t>(v.i)] = 1;
+  });
+  return set;
+}
+
+}  // namespace
+
+void measure_ranks(Report& report, const GroupOptions&) {
+  using Sense = Report::Sense;
+  constexpr int length = 512;
+  for (const auto& object : benchmarks::named_objects(length)) {
+    // A cube of 512 voxels around it, whatever its shape: the array of the plain ways.
+    Workspace cube = object.workspace;
+    cube.dims = {length, length, length};
+    const VoxelSet boundary = boundary_voxels(object.mesh, cube);
+    const VoxelSet inner = inner_voxels(object.mesh, boundary, cube);
+    const std::vector<std::uint8_t> set = dense(boundary, cube);
+    const ShapingElement sphere(LayerShape::sphere, layers_m);
+    const ShapingElement full(LayerShape::cube, layers_m);
+    const std::size_t bricks = touched_bricks(ranked_neighbours(boundary, inner, sphere, layers_q));
+    const auto ranks = [&](const ShapingElement& element) {
+      return [&] { ranked_neighbours(boundary, inner, element, layers_q); };
+    };
+    const auto distances = [&] {
+      distance_layers(object.mesh, boundary, inner, cube, layers_m, layers_q);
+    };
+    const std::vector<Timing> t = side_by_side({
+        {"ours, sphere, 1 thread", in_threads(1, ranks(sphere)), 9},
+        {"ours, sphere, 2 threads", in_threads(2, ranks(sphere)), 9},
+        {"ours, distance, 2 threads", in_threads(2, distances), 5},
+        {"write the touched bricks, 1 thread", in_threads(1, [&] { write_bricks(bricks); }), 9},
+        {"write the touched bricks, 2 threads", in_threads(2, [&] { write_bricks(bricks); }), 9},
+        {"exact transform of the array, 2 threads",
+         in_threads(2, [&] { exact_transform(set, cube.dims); }), 3},
+        {"the paper's triple loop, sphere",
+         [&] {
+           triple_loop::ranked_neighbours(boundary, inner, LayerShape::sphere, layers_m, layers_q);
+         },
+         1},
+        {"ours, cube, 2 threads", in_threads(2, ranks(full)), 5},
+        {"OpenVDB dilations, cube, 2 threads",
+         in_threads(2, [&] { openvdb_dilations(boundary, layers_m, layers_q); }), 1},
+    });
+    report.timings("ranks", object.name, t);
+    const double ours = t[1].wall, mapped = t[2].wall;
+    report.target("ranks: times the paper's triple loop", Sense::at_least, 300, t[6].wall / ours,
+                  object.name);
+    report.target("ranks: times an exact transform of the array", Sense::at_least, 50,
+                  t[5].wall / ours, object.name);
+    report.target("ranks: cost of writing the touched bricks", Sense::at_most, 4, ours / t[4].wall,
+                  object.name);
+    report.target("ranks, distance: times an exact transform", Sense::at_least, 25,
+                  t[5].wall / mapped, object.name);
+  }
+}
+
+}  // namespace vicinity::peers
