@@ -8,7 +8,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <mutex>
 #include <set>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -18,6 +20,7 @@
 #include "peers/groups.h"
 #include "peers/openvdb_peer.h"
 #include "vicinity/layers/distance_layers.h"
+#include "vicinity/layers/layer_bricks.h"
 #include "vicinity/layers/ranked_neighbours.h"
 #include "vicinity/voxel/boundary.h"
 #include "vicinity/voxel/inner.h"
@@ -94,8 +97,18 @@ void measure_ranks(Report& report, const GroupOptions&) {
     const ShapingElement sphere(LayerShape::sphere, layers_m);
     const ShapingElement full(LayerShape::cube, layers_m);
     const std::size_t bricks = touched_bricks(ranked_neighbours(boundary, inner, sphere, layers_q));
+    // As a build does it: by tiles, into bricks of a few bits a voxel, which are kept.
     const auto ranks = [&](const ShapingElement& element) {
-      return [&] { ranked_neighbours(boundary, inner, element, layers_q); };
+      return [&] {
+        std::mutex mutex;
+        HugeVector<BrickBits> kept;
+        rank_tiles(boundary, inner, element, layers_q, [&](const LayerBricks& tile) {
+          const std::lock_guard lock(mutex);
+          tile.for_each_brick([&](const BlockIndex&, std::span<const BrickBits> planes) {
+            kept.insert(kept.end(), planes.begin(), planes.end());
+          });
+        });
+      };
     };
     const auto distances = [&] {
       distance_layers(object.mesh, boundary, inner, cube, layers_m, layers_q);
@@ -114,6 +127,8 @@ void measure_ranks(Report& report, const GroupOptions&) {
          },
          1},
         {"ours, cube, 2 threads", in_threads(2, ranks(full)), 5},
+        {"ours, sphere, as a set of voxels for each rank, 2 threads",
+         in_threads(2, [&] { ranked_neighbours(boundary, inner, sphere, layers_q); }), 9},
         {"OpenVDB dilations, cube, 2 threads",
          in_threads(2, [&] { openvdb_dilations(boundary, layers_m, layers_q); }), 1},
     });

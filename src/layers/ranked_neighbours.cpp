@@ -3,9 +3,6 @@
 
 #include "vicinity/layers/ranked_neighbours.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,35 +10,13 @@
 #include <cstdint>
 #include <mutex>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "brick_rows.h"
-#include "vicinity/geometry/error.h"
 #include "vicinity/layers/layer_bricks.h"
 
 namespace vicinity {
 namespace {
-
-// A tile is large beside its halo, and its bricks are small beside the caches.
-constexpr std::int32_t tile_side = 256;
-
-/// The tiles that cover a box.
-std::vector<VoxelBox> tiles_of(const VoxelBox& box) {
-  const auto down = [](std::int32_t x) { return x & ~7; };
-  std::vector<VoxelBox> tiles;
-  for (std::int32_t k = down(box.lo.k); k < box.hi.k; k += tile_side) {
-    for (std::int32_t j = down(box.lo.j); j < box.hi.j; j += tile_side) {
-      for (std::int32_t i = down(box.lo.i); i < box.hi.i; i += tile_side) {
-        const auto end = [](std::int32_t begin, std::int32_t hi) {
-          return std::min(begin + tile_side, (hi + 7) & ~7);
-        };
-        tiles.push_back({{i, j, k}, {end(i, box.hi.i), end(j, box.hi.j), end(k, box.hi.k)}});
-      }
-    }
-  }
-  return tiles;
-}
 
 /// The voxels of a brick with this code.
 BrickBits voxels_with(unsigned code, std::span<const BrickBits> planes) {
@@ -104,29 +79,12 @@ class RankSets {
 
 RankedNeighbours ranked_neighbours(const VoxelSet& boundary, const VoxelSet& inner,
                                    const ShapingElement& element, int q) {
-  if (q < 0 || q > 32) {
-    throw Error({.where = "q",
-                 .what = "not a number of ranks",
-                 .found = std::to_string(q),
-                 .expected = "0 to 32"});
-  }
   RankedNeighbours result;
   const VoxelBox box =
-      boundary.box().empty() ? VoxelBox{} : boundary.box().grown(q * element.radius());
-  result.ranks.assign(static_cast<std::size_t>(q), VoxelSet(box));
-  if (q == 0 || box.empty()) return result;
-
+      boundary.box().empty() ? VoxelBox{} : boundary.box().grown(std::max(q, 0) * element.radius());
+  result.ranks.assign(static_cast<std::size_t>(std::clamp(q, 0, 32)), VoxelSet(box));
   RankSets sets(result.ranks, box);
-  const std::vector<VoxelBox> tiles = tiles_of(box);
-  tbb::enumerable_thread_specific<LayerBricks> memory;
-  tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
-    LayerBricks& bricks = memory.local();
-    bricks.start(tiles[t], element.radius(), q);
-    bricks.put_boundary(boundary);
-    bricks.put_inner(inner);
-    bricks.rank(element);
-    sets.put(bricks);
-  });
+  rank_tiles(boundary, inner, element, q, [&](const LayerBricks& bricks) { sets.put(bricks); });
   return result;
 }
 

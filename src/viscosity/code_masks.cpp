@@ -6,8 +6,8 @@
 #include <bit>
 #include <cstring>
 
-#include "vicinity/viscosity/packed_brick.h"
 #include "vicinity/geometry/widest_vectors.h"
+#include "vicinity/viscosity/packed_brick.h"
 
 namespace vicinity {
 namespace {

@@ -24,10 +24,10 @@
 
 #include "code_masks.h"
 #include "image_layers.h"
-#include "vicinity/viscosity/packed_brick.h"
 #include "sparse_layer.h"
 #include "vicinity/layers/distance_layers.h"
 #include "vicinity/viscosity/field_image.h"
+#include "vicinity/viscosity/packed_brick.h"
 
 namespace vicinity {
 namespace {

@@ -10,10 +10,10 @@
 #include <cstring>
 
 #include "code_masks.h"
-#include "vicinity/viscosity/packed_brick.h"
 #include "sparse_layer.h"
 #include "vicinity/geometry/widest_vectors.h"
 #include "vicinity/viscosity/field_image.h"
+#include "vicinity/viscosity/packed_brick.h"
 
 namespace vicinity {
 namespace {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "vicinity/layers/shaping_element.h"
@@ -121,5 +122,15 @@ class LayerBricks {
   HugeVector<std::uint32_t> changed_;  // bricks with anything in newest_
   HugeVector<Frontier> frontier_;
 };
+
+/// Ranks a whole object, tile by tile.
+///
+/// @param boundary, inner  as of ranked_neighbours()
+/// @param visit            called with each ranked tile, by any thread; the bricks are good until
+/// it
+///                         returns
+/// Errors: throws Error for q outside 0..32.
+void rank_tiles(const VoxelSet& boundary, const VoxelSet& inner, const ShapingElement& element,
+                int q, const std::function<void(const LayerBricks&)>& visit);
 
 }  // namespace vicinity
