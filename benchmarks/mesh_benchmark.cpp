@@ -13,7 +13,6 @@
 // shared machine the best is what the program costs, the rest is what the neighbours cost. Memory
 // is how far a fresh process grows at its peak, over the size of the file.
 
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
@@ -139,10 +138,14 @@ void measure_memory(const std::string& what, const std::filesystem::path& path) 
 }
 
 int report_memory(const std::string& what, const std::filesystem::path& path) {
+  // Not what getrusage() says, which remembers the process that started this one.
   const auto peak_kib = [] {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss);
+    std::ifstream lines("/proc/self/status");
+    for (std::string word; lines >> word;) {
+      double kib = 0;
+      if (word == "VmHWM:" && lines >> kib) return kib;
+    }
+    return 0.0;
   };
   const double before = peak_kib();
   const TriangleMesh mesh = read_stl(path);

@@ -160,7 +160,7 @@ TEST(StlFile, AnAsciiFileReadInPartsIsTheSameMeshAsItsTrianglesInBinary) {
   // One solid; two, the second of which begins somewhere in the middle; one with names to trip
   // over.
   std::string two = text;
-  two.insert(two.find("facet", two.size() / 2), "endsolid a\nsolid facet\n");
+  two.insert(two.find("\nfacet", two.size() / 2) + 1, "endsolid a\nsolid facet\n");
   const std::string named = "solid a\n" + text.substr(text.find('\n') + 1);
   std::string carriage_returns = text;
   std::replace(carriage_returns.begin(), carriage_returns.end(), '\n', '\r');
