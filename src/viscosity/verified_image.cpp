@@ -13,9 +13,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "vicinity/viscosity/packed_brick.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/viscosity/field_image.h"
+#include "vicinity/viscosity/packed_brick.h"
 
 namespace vicinity {
 namespace {
