@@ -25,7 +25,7 @@ if [[ ${1:-} == --benchmarks || ${1:-} == --peers ]]; then
   packages+=(libbenchmark-dev)
 fi
 if [[ ${1:-} == --peers ]]; then
-  # What scripts/bench.sh measures us beside: 300 MB.
+  # What scripts/bench.sh measures us beside: about 150 MB.
   packages+=(libnanovdb-dev libfcl-dev libcgal-dev liboctomap-dev libdynamicedt3d-dev python3-scipy)
 fi
 

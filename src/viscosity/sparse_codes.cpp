@@ -14,28 +14,39 @@ void SparseCodes::codes_at(std::span<const VoxelIndex> voxels, VoxelCode* codes)
   static constexpr std::uint32_t empty = FieldReference::uniform(0);
   std::array<const std::uint32_t*, group> entries;
   std::array<std::uint32_t, group> references;
+  std::array<std::uint8_t, group> mixed;  // which of the group lie in a brick of several codes
   while (!voxels.empty()) {
     const std::size_t count = std::min(group, voxels.size());
     // No step branches on what it finds: a wrong guess would throw away the loads behind it. What
-    // is settled already is read once more from where it was.
+    // the root settles is read once more, from where it was.
     for (std::size_t n = 0; n < count; ++n) {
       const VoxelIndex& v = voxels[n];
-      const bool held = holds(v);
-      const std::uint32_t* const above = held ? root_ + region_of(v) : &empty;
+      const std::uint32_t* const above = holds(v) ? root_ + region_of(v) : &empty;
       const bool settled = FieldReference::is_uniform(*above);
       entries[n] = (settled ? above : regions_) + (settled ? 0 : entry_of(*above, v));
       __builtin_prefetch(entries[n]);
     }
+    std::size_t mixed_count = 0;
     for (std::size_t n = 0; n < count; ++n) {
       const std::uint32_t reference = *entries[n];
       references[n] = reference;
-      const std::uint32_t known = FieldReference::is_uniform(reference) ? 0 : reference;
-      const std::byte* const brick = brick_of(known);
-      const unsigned width = known >> FieldReference::width_shift;
+      codes[n] = static_cast<VoxelCode>(reference);  // right where it is uniform
+      mixed[mixed_count] = static_cast<std::uint8_t>(n);
+      mixed_count += FieldReference::is_uniform(reference) ? 0 : 1;
+    }
+    for (std::size_t m = 0; m < mixed_count; ++m) {
+      const std::size_t n = mixed[m];
+      const std::byte* const brick = brick_of(references[n]);
+      const unsigned width = references[n] >> FieldReference::width_shift;
       __builtin_prefetch(brick + ((voxel_in_brick(voxels[n]) << width) >> 3));
       __builtin_prefetch(brick + (std::size_t{64} << width));
     }
-    for (std::size_t n = 0; n < count; ++n) codes[n] = code(references[n], voxels[n]);
+    for (std::size_t m = 0; m < mixed_count; ++m) {
+      const std::size_t n = mixed[m];
+      codes[n] =
+          code_in_brick(brick_of(references[n]), references[n] >> FieldReference::width_shift,
+                        voxel_in_brick(voxels[n]));
+    }
     voxels = voxels.subspan(count);
     codes += count;
   }
