@@ -57,6 +57,10 @@ void LayerBricks::start(const VoxelBox& tile, int m, int q) {
   } else {
     directory_.assign(cell_count, 0);
   }
+  // Room for every brick that there can be: what is not used is not touched, and nothing is moved.
+  cells_.reserve(cell_count);
+  for (auto* bits : {&reached_, &inner_, &newest_}) bits->reserve(cell_count);
+  planes_.reserve(cell_count * plane_count_);
   full_cells_.clear();
   cells_.assign(2, 0);
   for (auto* bits : {&reached_, &inner_, &newest_}) bits->assign(2, {});
