@@ -30,18 +30,13 @@ struct alignas(64) NearestRegion {
   /// @param normal  no longer than `longest`
   /// @param slack   how far in front of the plane the region may still reach
   void keep_behind(const Vec3& normal, const Vec3& at, double longest, double slack);
-  bool full() const noexcept { return planes == most_planes; }
 
   /// Bounds the region by the feature's own and a margin along each axis.
   void set_bounds(const Box& feature, const Vec3& margin);
 
-  /// Whether p is in the region; p in grid coordinates, near enough to be exact.
-  bool holds(float p_x, float p_y, float p_z) const noexcept {
-    const float from_x = p_x - anchor[0], from_y = p_y - anchor[1], from_z = p_z - anchor[2];
-    for (std::size_t n = 0; n < planes; ++n) {
-      if (x[n] * from_x + y[n] * from_y + z[n] * from_z > offset[n]) return false;
-    }
-    return true;
+  /// Whether p is in the region; p in grid coordinates, and a voxel centre, so that it is exact.
+  bool holds(const Eigen::Vector3f& p) const noexcept {
+    return touches(p, Eigen::Vector3f::Zero());
   }
 
   /// False where one plane alone leaves a box out, given by its middle and half its size.
@@ -54,16 +49,16 @@ struct alignas(64) NearestRegion {
     return true;
   }
 
-  float x[most_planes] = {}, y[most_planes] = {}, z[most_planes] = {};  ///< normals
-  float offset[most_planes] = {};  ///< holds p where normal · (p - anchor) <= offset
-  Eigen::Vector3f anchor;
-  Eigen::Vector3f point;      ///< of the face, of the edge (its start), or the vertex; from anchor
+  /// Normals and offsets: holds p where normal · (p - anchor) <= offset. Unused ones are 0.
+  float x[most_planes] = {}, y[most_planes] = {}, z[most_planes] = {}, offset[most_planes] = {};
+  Eigen::Vector3f anchor;     ///< the voxel centre, in grid coordinates
+  Eigen::Vector3f point;      ///< of the face, the edge (its start) or the vertex; from anchor
   Eigen::Vector3f direction;  ///< of the face: its normal; of the edge: along it; length 1
-  float length = 0;         ///< of the edge
-  float error = 0;          ///< how far off a position along `direction` can be
+  float length = 0;           ///< of the edge
+  float error = 0;            ///< how far off a position along `direction` can be
   std::uint8_t planes = 0;
   FeatureKind kind = FeatureKind::vertex;
-  Eigen::Vector3f lo, hi;   ///< bounds, in grid coordinates
+  Eigen::Vector3f lo, hi;  ///< bounds, in grid coordinates
 };
 
 }  // namespace vicinity

@@ -19,50 +19,54 @@ namespace vicinity {
 /// Eight boxes of voxel centres, all of one size, in grid coordinates.
 struct EightBoxes {
   alignas(32) float x[8] = {}, y[8] = {}, z[8] = {};  ///< middles
-  float half_x, half_y, half_z;        ///< sizes
+  float half_x = 0, half_y = 0, half_z = 0;           ///< sizes
 };
 
 /// For each of eight boxes, which regions touch it.
 class EightLists {
  public:
-  /// Of the regions listed, those that touch; in the order of the list.
+  /// @param listed  positions in `regions`; each list is a part of it, in its order
   void fill(std::span<const NearestRegion> regions, std::span<const std::uint32_t> listed,
             const EightBoxes& boxes);
 
   std::span<const std::uint32_t> operator[](std::size_t box) const noexcept {
-    return {&of_box_[box * stride_], count_[box]};
+    return {&of_boxes_[box * stride_], counts_[box]};
   }
 
  private:
-  std::vector<std::uint32_t> of_box_;
+  std::vector<std::uint32_t> of_boxes_;  ///< eight parts of stride_
+  std::vector<std::uint8_t> touched_;    ///< by each region; the first box in bit 0
   std::size_t stride_ = 0;
-  std::array<std::size_t, 8> count_{};
+  std::array<std::size_t, 8> counts_{};
 };
 
 /// A cell is 4 x 4 x 4 voxels, in the order of k, j, i.
 inline constexpr std::size_t cell_voxels = 64;
 
-/// How far the voxels of a cell are from the nearest of the features listed, in single precision.
+/// How far the voxels of a cell are from the nearest of some features.
 struct CellDistances {
   alignas(64) float squared[cell_voxels];  ///< infinite where no region holds the voxel
-  float error;                             ///< of positions, see NearestRegion
+  float error;                             ///< the largest of their regions' errors
 };
 
+/// Measures the cell whose middle is given, in grid coordinates. All regions listed must touch it.
 void measure_cell(std::span<const NearestRegion> regions, std::span<const std::uint32_t> listed,
                   float middle_x, float middle_y, float middle_z, CellDistances& distances);
 
-/// How distances are stored.
+/// How distances are rounded.
 struct Rounding {
   float steps_per_voxel;
-  float first_rank;      ///< where rank 1 ends less `m`: half the diagonal of a voxel
-  float ranks_per_voxel; ///< 1 / m
-  float farthest;        ///< beyond it, there is no rank; above q * m + first_rank
+  float zero;  ///< the distance from which ranks are counted
+  float ranks_per_voxel;
+  float farthest;           ///< what is farther, or nowhere, counts as this far; beyond all ranks
+  std::int32_t no_rank;     ///< this rank and higher ones are none
+  std::int32_t most_steps;  ///< as many steps are stored at most
 };
 
 struct RoundedCell {
-  alignas(64) std::uint16_t steps[cell_voxels];
-  alignas(64) std::uint8_t ranks[cell_voxels];  ///< less one, or q and more: none
-  std::uint64_t unsure;                         ///< voxels for which single precision cannot tell
+  std::uint16_t steps[cell_voxels];
+  std::uint8_t ranks[cell_voxels];  ///< from 0; no_rank: none
+  std::uint64_t unsure;             ///< voxels whose steps or rank hang on the distances' error
 };
 
 void round_cell(const CellDistances& distances, const Rounding& rounding, RoundedCell& rounded);

@@ -3,6 +3,8 @@
 
 #include "surface_features.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,12 +27,13 @@ constexpr double least_height = 2e-6;
 
 SurfaceFeatures::SurfaceFeatures(const TriangleMesh& mesh, const Workspace& workspace, double reach)
     : reach_(reach) {
-  points_.reserve(mesh.vertices.size());
-  for (const Vec3& p_W : mesh.vertices) {
-    points_.push_back(workspace.to_grid(p_W) - Vec3::Constant(0.5));
-  }
-  faces_.reserve(mesh.triangles.size());
-  for (const auto& triangle : mesh.triangles) faces_.push_back(make_face(triangle));
+  points_.resize(mesh.vertices.size());
+  tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t v) {
+    points_[v] = workspace.to_grid(mesh.vertices[v]) - Vec3::Constant(0.5);
+  });
+  faces_.resize(mesh.triangles.size());
+  tbb::parallel_for(std::size_t{0}, faces_.size(),
+                    [&](std::size_t t) { faces_[t] = make_face(mesh.triangles[t]); });
   join_edges();
   join_vertices();
   for (const std::uint32_t v : used_vertices_) bounds_.extend(points_[v]);
@@ -63,7 +66,7 @@ void SurfaceFeatures::join_edges() {
   struct Side {
     std::uint32_t b, face;
   };
-  std::vector<std::uint32_t> start(points_.size() + 1, 0);
+  HugeVector<std::uint32_t> start(points_.size() + 1, 0);
   const auto for_each_side = [&](const auto& visit) {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const auto& [u, v, w] = faces_[f].vertices;
@@ -74,16 +77,22 @@ void SurfaceFeatures::join_edges() {
   };
   for_each_side([&](std::uint32_t a, std::uint32_t, std::uint32_t) { ++start[a + 1]; });
   for (std::size_t v = 0; v < points_.size(); ++v) start[v + 1] += start[v];
-  std::vector<Side> sides(3 * faces_.size());
-  std::vector<std::uint32_t> fill(start.begin(), start.end() - 1);
+  HugeVector<Side> sides(3 * faces_.size());
+  HugeVector<std::uint32_t> fill(start.begin(), start.end() - 1);
   for_each_side([&](std::uint32_t a, std::uint32_t b, std::uint32_t f) {
     sides[fill[a]++] = {b, f};
   });
-  for (std::uint32_t a = 0; a < points_.size(); ++a) {
-    const std::span<Side> of_a(sides.data() + start[a], start[a + 1] - start[a]);
+  const auto sides_of = [&](std::size_t a) {
+    return std::span<Side>(sides.data() + start[a], start[a + 1] - start[a]);
+  };
+  tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t a) {
+    const std::span<Side> of_a = sides_of(a);
     std::sort(of_a.begin(), of_a.end(), [](const Side& s, const Side& t) {
       return std::tie(s.b, s.face) < std::tie(t.b, t.face);
     });
+  });
+  for (std::uint32_t a = 0; a < points_.size(); ++a) {
+    const std::span<Side> of_a = sides_of(a);
     for (std::size_t s = 0; s < of_a.size(); ++s) {
       if (s == 0 || of_a[s].b != of_a[s - 1].b) {
         edges_.push_back({a, of_a[s].b, static_cast<std::uint32_t>(edge_faces_.size()), 0});
@@ -106,7 +115,7 @@ void SurfaceFeatures::join_vertices() {
     first_edge_[v + 1] += first_edge_[v];
   }
   vertex_edges_.resize(2 * edges_.size());
-  std::vector<std::uint32_t> fill(first_edge_.begin(), first_edge_.end() - 1);
+  HugeVector<std::uint32_t> fill(first_edge_.begin(), first_edge_.end() - 1);
   for (std::uint32_t e = 0; e < edges_.size(); ++e) {
     vertex_edges_[fill[edges_[e].a]++] = e;
     vertex_edges_[fill[edges_[e].b]++] = e;
@@ -155,8 +164,8 @@ bool SurfaceFeatures::face_region(const Face& face, NearestRegion& region) const
   for (const auto& [from, to] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 2)}) {
     const std::uint32_t u = face.vertices[static_cast<std::size_t>(from)];
     const std::uint32_t v = face.vertices[static_cast<std::size_t>(to)];
-    region.keep_behind(out_of_face(face, u, v), points_[u],
-                       (points_[v] - points_[u]).lpNorm<1>(), face.slop);
+    region.keep_behind(out_of_face(face, u, v), points_[u], (points_[v] - points_[u]).lpNorm<1>(),
+                       face.slop);
   }
   region.keep_behind(n, a, 1, reach_);
   region.keep_behind(-n, a, 1, reach_);

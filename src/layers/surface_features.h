@@ -19,8 +19,8 @@
 ///
 /// A region may only ever be too large, never too small: then no centre falls between two regions.
 /// A segment or a point is a part of the surface, so that its distance is right wherever it is
-/// taken; a plane's, taken a millionth of a voxel outside of its triangle, is at most that millionth
-/// too small.
+/// taken; a plane's, taken a millionth of a voxel outside of its triangle, is at most that
+/// millionth too small.
 ///
 /// Grid coordinates here have voxel centres at integers, and the voxel's length is 1.
 #pragma once
@@ -29,10 +29,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "nearest_region.h"
 #include "vicinity/mesh/triangle_mesh.h"
+#include "vicinity/voxel/huge_pages.h"
 #include "vicinity/voxel/workspace.h"
 
 namespace vicinity {
@@ -85,13 +85,13 @@ class SurfaceFeatures {
 
   double reach_;
   Box bounds_;
-  std::vector<Vec3> points_;
-  std::vector<Face> faces_;
-  std::vector<Edge> edges_;
-  std::vector<std::uint32_t> edge_faces_;     ///< of edge e: from first_face, face_count of them
-  std::vector<std::uint32_t> used_vertices_;  ///< those of a triangle
-  std::vector<std::uint32_t> first_edge_;     ///< vertex -> where its edges start in vertex_edges_
-  std::vector<std::uint32_t> vertex_edges_;
+  HugeVector<Vec3> points_;
+  HugeVector<Face> faces_;
+  HugeVector<Edge> edges_;
+  HugeVector<std::uint32_t> edge_faces_;     ///< of edge e: from first_face, face_count of them
+  HugeVector<std::uint32_t> used_vertices_;  ///< those of a triangle
+  HugeVector<std::uint32_t> first_edge_;     ///< vertex -> where its edges start in vertex_edges_
+  HugeVector<std::uint32_t> vertex_edges_;
 };
 
 }  // namespace vicinity
