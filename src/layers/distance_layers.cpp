@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -56,65 +57,62 @@ double checked_reach(int m, int q) {
 class SlabLists {
  public:
   explicit SlabLists(const SurfaceFeatures& features) {
-    const std::size_t chunks = (features.size() + chunk_size - 1) / chunk_size;
-    std::vector<std::vector<Touch>> touches(chunks);
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
-      const std::size_t end = std::min(features.size(), (c + 1) * chunk_size);
-      for (std::size_t f = c * chunk_size; f < end; ++f) {
-        find_slabs(features, static_cast<std::uint32_t>(f), touches[c]);
-      }
-    });
-    std::int32_t last = -1;
-    first_ = 0;
-    for (const auto& some : touches) {
-      for (const Touch& touch : some) {
-        if (last < first_) first_ = last = touch.slab;
-        first_ = std::min(first_, touch.slab);
-        last = std::max(last, touch.slab);
-      }
+    HugeVector<Range> ranges(features.size());
+    tbb::parallel_for(std::size_t{0}, ranges.size(),
+                      [&](std::size_t f) { ranges[f] = range_of(features, f); });
+    Range all;
+    for (const Range& range : ranges) {
+      all.first = std::min(all.first, range.first);
+      all.last = std::max(all.last, range.last);
     }
-    start_.assign(static_cast<std::size_t>(last - first_ + 2), 0);
-    for (const auto& some : touches) {
-      for (const Touch& touch : some) ++start_[static_cast<std::size_t>(touch.slab - first_ + 1)];
-    }
-    for (std::size_t n = 1; n < start_.size(); ++n) start_[n] += start_[n - 1];
-    features_.resize(start_.back());
-    std::vector<std::size_t> fill(start_);
-    for (const auto& some : touches) {
-      for (const Touch& touch : some) {
-        features_[fill[static_cast<std::size_t>(touch.slab - first_)]++] = touch.feature;
+    first_ = all.first;
+    starts_.assign(static_cast<std::size_t>(std::max(all.last - all.first, -1) + 2), 0);
+    const auto for_each = [&](const auto& visit) {
+      for (std::size_t f = 0; f < ranges.size(); ++f) {
+        for (std::int32_t slab = ranges[f].first; slab <= ranges[f].last; ++slab) {
+          visit(static_cast<std::size_t>(slab - first_), static_cast<std::uint32_t>(f));
+        }
       }
-    }
+    };
+    for_each([&](std::size_t slab, std::uint32_t) { ++starts_[slab + 1]; });
+    for (std::size_t n = 1; n < starts_.size(); ++n) starts_[n] += starts_[n - 1];
+    features_.resize(starts_.back());
+    std::vector<std::size_t> fill(starts_);
+    for_each([&](std::size_t slab, std::uint32_t f) { features_[fill[slab]++] = f; });
   }
 
   std::span<const std::uint32_t> operator[](std::int32_t slab) const {
-    const auto n = static_cast<std::size_t>(slab - first_);
-    if (slab < first_ || n + 1 >= start_.size()) return {};
-    return {features_.data() + start_[n], start_[n + 1] - start_[n]};
+    const std::int64_t n = std::int64_t{slab} - first_;
+    if (n < 0 || n + 1 >= static_cast<std::int64_t>(starts_.size())) return {};
+    const std::size_t start = starts_[static_cast<std::size_t>(n)];
+    return {features_.data() + start, starts_[static_cast<std::size_t>(n + 1)] - start};
   }
 
  private:
-  struct Touch {
-    std::int32_t slab;
-    std::uint32_t feature;
+  /// From the first to the last slab touched; a region is convex, and touches all between.
+  struct Range {
+    std::int32_t first = std::numeric_limits<std::int32_t>::max() / 2;
+    std::int32_t last = std::numeric_limits<std::int32_t>::min() / 2;
   };
-  static constexpr std::size_t chunk_size = 4096;
 
-  static void find_slabs(const SurfaceFeatures& features, std::uint32_t feature,
-                         std::vector<Touch>& touches) {
+  static Range range_of(const SurfaceFeatures& features, std::size_t feature) {
+    Range range;
     NearestRegion region;
-    if (!features.region_of(feature, region)) return;
+    if (!features.region_of(feature, region)) return range;
     Eigen::Vector3f middle = 0.5f * (region.lo + region.hi), half = 0.5f * (region.hi - region.lo);
     half.z() = 3.5f;
     const auto slab_of = [](float z) { return static_cast<std::int32_t>(std::floor(z)) >> 3; };
     for (std::int32_t slab = slab_of(region.lo.z()); slab <= slab_of(region.hi.z()); ++slab) {
       middle.z() = static_cast<float>(slab * 8) + 3.5f;
-      if (region.touches(middle, half)) touches.push_back({slab, feature});
+      if (!region.touches(middle, half)) continue;
+      range.first = std::min(range.first, slab);
+      range.last = slab;
     }
+    return range;
   }
 
   std::int32_t first_;
-  std::vector<std::size_t> start_;
+  std::vector<std::size_t> starts_;  ///< of each slab's part of features_, and the end
   HugeVector<std::uint32_t> features_;
 };
 

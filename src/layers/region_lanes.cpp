@@ -186,18 +186,18 @@ void measure_cell(std::span<const NearestRegion> regions, std::span<const std::u
 VICINITY_WIDEST_VECTORS
 void round_cell(const CellDistances& distances, const Rounding& rounding, RoundedCell& rounded) {
   const Rounding r = rounding;  // no store below can change it
-  // Positions are off by as much on both ends of a distance. Squares are off by rounding, on sides
-  // of up to 6 voxels more than the distance (a cell and a half): 3e-7 * (d + 6)², so that
-  // distances are off by that over 2 d. Under a hundredth of a voxel, it no longer matters: that is
-  // step 0.
+  // Both ends of a distance are off by as much as positions are. Squares are off by rounding: by
+  // 6e-7 of the square of the longest side, which is a distance and a cell and a half, and
+  // distances by that over twice the distance. Below 0.005, all that matters is that no step is
+  // reached.
   const float error = 2 * distances.error;
   std::int32_t steps[cell_voxels], ranks[cell_voxels], differences[cell_voxels];
   for (std::size_t v = 0; v < cell_voxels; ++v) {
     const float square = distances.squared[v];
     const float root = std::sqrt(square > 0 ? square : 0.0f);
     const float d = root < r.farthest ? root : r.farthest;
-    const float of_squares = 1.5e-7f * (d + 12) + 5.4e-6f / (d > 0.01f ? d : 0.01f);
-    const float off = error + 2 * of_squares;
+    const float of_squares = 3e-7f * (d + 12) + 1.08e-5f / (d > 0.005f ? d : 0.005f);
+    const float off = error + of_squares;
     const float low = d > off ? d - off : 0.0f, high = d + off;
     const float low_s = low > r.zero ? low - r.zero : 0.0f;
     const float high_s = high > r.zero ? high - r.zero : 0.0f;

@@ -166,7 +166,8 @@ void SlabDistances::fill_block(std::span<const std::uint32_t> listed) {
                  }));
   for (std::int32_t n = 0; n < 8; ++n) {
     const auto touching = of_brick_[static_cast<std::size_t>(n)];
-    if (!touching.empty()) fill_brick(n * 8, touching);
+    const std::uint64_t wanted = any_wanted_[0] | any_wanted_[1] | any_wanted_[2] | any_wanted_[3];
+    if (!touching.empty() && (wanted >> (n * 8) & 0xff) != 0) fill_brick(n * 8, touching);
   }
   store();
 }
