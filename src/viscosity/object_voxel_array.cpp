@@ -178,65 +178,92 @@ class LatestTiles {
   std::deque<std::pair<std::unique_ptr<const Look>, std::shared_ptr<Drafts>>> latest_;
 };
 
+/// The tiles that cover a box, x fastest.
+class Tiles {
+ public:
+  explicit Tiles(const VoxelBox& box)
+      : lo_{first(box.lo.i), first(box.lo.j), first(box.lo.k)},
+        size_{count(lo_.i, box.hi.i), count(lo_.j, box.hi.j), count(lo_.k, box.hi.k)} {}
+
+  std::size_t count() const noexcept {
+    return static_cast<std::size_t>(std::int64_t{size_.i} * size_.j * size_.k);
+  }
+  VoxelBox at(std::size_t n) const noexcept {
+    const auto t = static_cast<std::int64_t>(n);
+    const VoxelIndex lo = {lo_.i + static_cast<std::int32_t>(t % size_.i) * tile_side,
+                           lo_.j + static_cast<std::int32_t>(t / size_.i % size_.j) * tile_side,
+                           lo_.k + static_cast<std::int32_t>(t / size_.i / size_.j) * tile_side};
+    return {lo, {lo.i + tile_side, lo.j + tile_side, lo.k + tile_side}};
+  }
+
+ private:
+  static std::int32_t first(std::int32_t lo) noexcept { return lo & ~(tile_side - 1); }
+  static std::int32_t count(std::int32_t first, std::int32_t hi) noexcept {
+    return (hi - first + tile_side - 1) / tile_side;
+  }
+
+  VoxelIndex lo_, size_;
+};
+
+/// Boundary and inner voxels of a box.
+struct TileVoxels {
+  VoxelSet boundary, inner;
+  bool is_inner_throughout = false;
+
+  bool empty() const noexcept {
+    return boundary.blocks().block_count() == 0 && inner.blocks().block_count() == 0;
+  }
+};
+
+TileVoxels voxels_of(const Voxeliser& voxeliser, const VoxelBox& box, StageTimes& times) {
+  TileVoxels tile;
+  {
+    const Stopwatch watch(times.voxelise);
+    tile.boundary = voxeliser.boundary(box);
+  }
+  const Stopwatch watch(times.fill);
+  if (tile.boundary.box().empty()) return tile;
+  if (tile.boundary.blocks().block_count() == 0) {
+    const std::optional<bool> is_inner = voxeliser.inner_throughout(tile.boundary.box());
+    if (is_inner == false) return tile;
+    tile.is_inner_throughout = is_inner == true && tile.boundary.box() == box;
+    if (tile.is_inner_throughout) return tile;
+  }
+  tile.inner = voxeliser.inner(tile.boundary);
+  return tile;
+}
+
 /// Ranked by a shaping element.
 ObjectVoxelArray ranked_array(const SceneObject& object, const Voxeliser& voxeliser,
                               StageTimes& times, const std::function<void(double)>& onward) {
   const ShapingElement element(object.layers, object.m);
   const VoxelBox box = voxeliser.box().grown(object.q * object.m);
   ObjectVoxelArray array(box, object.q, false);
-
-  const auto tiles = [](std::int32_t lo, std::int32_t hi) {
-    const std::int32_t first = lo & ~(tile_side - 1);
-    return std::pair{first, (hi - first + tile_side - 1) / tile_side};
-  };
-  const auto [i_first, i_count] = tiles(box.lo.i, box.hi.i);
-  const auto [j_first, j_count] = tiles(box.lo.j, box.hi.j);
-  const auto [k_first, k_count] = tiles(box.lo.k, box.hi.k);
-  const auto tile_at = [&](std::size_t n) {
-    const auto at = static_cast<std::int64_t>(n);
-    const VoxelIndex lo = {i_first + static_cast<std::int32_t>(at % i_count) * tile_side,
-                           j_first + static_cast<std::int32_t>(at / i_count % j_count) * tile_side,
-                           k_first + static_cast<std::int32_t>(at / i_count / j_count) * tile_side};
-    return VoxelBox{lo, {lo.i + tile_side, lo.j + tile_side, lo.k + tile_side}};
-  };
-
+  const Tiles tiles(box);
   tbb::enumerable_thread_specific<LayerBricks> memory;
   LatestTiles latest;
   const auto drafts_of = [&](const VoxelBox& tile) -> std::shared_ptr<Drafts> {
-    const VoxelBox seen = tile.grown(LayerBricks::halo(object.m, object.q));
-    VoxelSet boundary, inner;
-    {
-      const Stopwatch watch(times.voxelise);
-      boundary = voxeliser.boundary(seen);
-    }
-    {
-      const Stopwatch watch(times.fill);
-      if (boundary.box().empty()) return nullptr;
-      if (boundary.blocks().block_count() == 0) {
-        const std::optional<bool> is_inner = voxeliser.inner_throughout(boundary.box());
-        if (is_inner == false) return nullptr;
-        if (is_inner == true && boundary.box() == seen) return inner_tile(object.q);
-      }
-      inner = voxeliser.inner(boundary);
-    }
+    const TileVoxels voxels =
+        voxels_of(voxeliser, tile.grown(LayerBricks::halo(object.m, object.q)), times);
+    if (voxels.is_inner_throughout) return inner_tile(object.q);
+    if (voxels.empty()) return nullptr;
     const Stopwatch watch(times.rank);
-    LatestTiles::Look look(tile.lo, boundary, inner);
+    LatestTiles::Look look(tile.lo, voxels.boundary, voxels.inner);
     if (std::shared_ptr<Drafts> known = latest.find(look)) return known;
     LayerBricks& bricks = memory.local();
     bricks.start(tile, object.m, object.q);
-    bricks.put_boundary(boundary);
-    bricks.put_inner(inner);
+    bricks.put_boundary(voxels.boundary);
+    bricks.put_inner(voxels.inner);
     bricks.rank(element);
     auto drafts = std::make_shared<Drafts>();
     draft(bricks, region_of(tile.lo), object.q, *drafts);
     latest.put(std::move(look), drafts);
     return drafts;
   };
-  put_in_order(static_cast<std::size_t>(std::int64_t{i_count} * j_count * k_count), array, onward,
-               [&](std::size_t n) {
-                 const VoxelBox tile = tile_at(n);
-                 return PlacedDrafts{region_of(tile.lo), drafts_of(tile)};
-               });
+  put_in_order(tiles.count(), array, onward, [&](std::size_t n) {
+    const VoxelBox tile = tiles.at(n);
+    return PlacedDrafts{region_of(tile.lo), drafts_of(tile)};
+  });
   return array;
 }
 
@@ -279,63 +306,67 @@ struct DistanceRow {
   }
 };
 
+/// Gives the voxels of a tile to its regions.
+void draft(const TileVoxels& voxels, const DistanceLayers& layers, const VoxelIndex& tile, int q,
+           Drafts& drafts) {
+  const auto row = std::make_unique<DistanceRow>();
+  for (std::int32_t n = 0; n < tile_regions * tile_regions * tile_regions; ++n) {
+    const VoxelIndex at = {n % tile_regions, n / tile_regions % tile_regions,
+                           n / tile_regions / tile_regions};
+    Drafts::Region* region = nullptr;
+    for (std::int32_t r = 0; r < 64; ++r) {
+      const BlockIndex b = {tile.i + at.i, (tile.j + at.j) * 8 + (r & 7),
+                            (tile.k + at.k) * 8 + (r >> 3)};
+      const DistanceBlock* distances = layers.distances.find(b);
+      if (distances == nullptr && voxels.inner.blocks().find(b) == nullptr &&
+          voxels.boundary.blocks().find(b) == nullptr) {
+        continue;
+      }
+      row->codes.fill(object_code::empty);
+      row->steps.fill(no_distance);
+      row->lay(voxels.boundary, b, object_code::boundary, distances);
+      row->lay(voxels.inner, b, object_code::inner, nullptr);
+      for (int rank = 1; rank <= q; ++rank) {
+        row->lay(layers.neighbours.ranks[static_cast<std::size_t>(rank - 1)], b,
+                 object_code::of_rank(rank), distances);
+      }
+      if (region == nullptr) region = &drafts.add(at, q);
+      for (const VoxelCode code : row->codes) ++region->counts[code];
+      for (std::size_t brick = 0; brick < 8; ++brick) {
+        const std::size_t place = static_cast<std::size_t>(r) * 8 + brick;
+        region->draft.put_codes(place, DistanceRow::brick(row->codes, brick));
+        region->draft.put_distances(place, DistanceRow::brick(row->steps, brick));
+      }
+    }
+  }
+}
+
 /// Ranked by distance, and the distance kept.
 ObjectVoxelArray distance_array(const SceneObject& object, const TriangleMesh& mesh,
                                 const Workspace& workspace, const Voxeliser& voxeliser,
                                 StageTimes& times, const std::function<void(double)>& onward) {
-  VoxelSet boundary, inner;
-  DistanceLayers layers;
-  {
-    const Stopwatch watch(times.voxelise);
-    boundary = voxeliser.boundary(voxeliser.box());
-  }
-  {
-    const Stopwatch watch(times.fill);
-    inner = voxeliser.inner(boundary);
-  }
+  std::optional<SurfaceDistances> surface;
   {
     const Stopwatch watch(times.rank);
-    layers = distance_layers(mesh, boundary, inner, workspace, object.m, object.q);
+    surface.emplace(mesh, workspace, object.m, object.q);
   }
-  // A voxel takes a rank by its centre, which may lie half a diagonal further out than the layer.
-  const VoxelBox box = voxeliser.box().grown(object.q * object.m + 1);
+  const VoxelBox box = surface->box(voxeliser.box());
   ObjectVoxelArray array(box, object.q, true);
-  const VoxelIndex lo = array.lo(), size = array.size();
-  put_in_order(static_cast<std::size_t>(size.j) * static_cast<std::size_t>(size.k), array, onward,
-               [&](std::size_t n) {
-                 const Stopwatch watch(times.rank);
-                 const auto drafts = std::make_shared<Drafts>();
-                 const auto row = std::make_unique<DistanceRow>();
-                 const VoxelIndex at = {0, lo.j + static_cast<std::int32_t>(n) % size.j,
-                                        lo.k + static_cast<std::int32_t>(n) / size.j};
-                 for (std::int32_t i = lo.i; i < lo.i + size.i; ++i) {
-                   Drafts::Region* region = nullptr;
-                   for (std::int32_t r = 0; r < 64; ++r) {
-                     const BlockIndex b = {i, at.j * 8 + (r & 7), at.k * 8 + (r >> 3)};
-                     const DistanceBlock* distances = layers.distances.find(b);
-                     if (distances == nullptr && inner.blocks().find(b) == nullptr &&
-                         boundary.blocks().find(b) == nullptr) {
-                       continue;
-                     }
-                     row->codes.fill(object_code::empty);
-                     row->steps.fill(no_distance);
-                     row->lay(boundary, b, object_code::boundary, distances);
-                     row->lay(inner, b, object_code::inner, nullptr);
-                     for (int rank = 1; rank <= object.q; ++rank) {
-                       row->lay(layers.neighbours.ranks[static_cast<std::size_t>(rank - 1)], b,
-                                object_code::of_rank(rank), distances);
-                     }
-                     if (region == nullptr) region = &drafts->add({i, at.j, at.k}, object.q);
-                     for (const VoxelCode code : row->codes) ++region->counts[code];
-                     for (std::size_t brick = 0; brick < 8; ++brick) {
-                       const std::size_t place = static_cast<std::size_t>(r) * 8 + brick;
-                       region->draft.put_codes(place, DistanceRow::brick(row->codes, brick));
-                       region->draft.put_distances(place, DistanceRow::brick(row->steps, brick));
-                     }
-                   }
-                 }
-                 return PlacedDrafts{{0, 0, 0}, drafts};
-               });
+  const Tiles tiles(box);
+  put_in_order(tiles.count(), array, onward, [&](std::size_t n) {
+    const VoxelBox tile = tiles.at(n);
+    PlacedDrafts placed{region_of(tile.lo), nullptr};
+    const TileVoxels voxels = voxels_of(voxeliser, tile, times);
+    if (voxels.is_inner_throughout) {
+      placed.drafts = inner_tile(object.q);
+      return placed;
+    }
+    const Stopwatch watch(times.rank);
+    const DistanceLayers layers = surface->layers(voxels.boundary, voxels.inner, tile.within(box));
+    placed.drafts = std::make_shared<Drafts>();
+    draft(voxels, layers, placed.region, object.q, *placed.drafts);
+    return placed;
+  });
   return array;
 }
 
