@@ -11,7 +11,8 @@
 
 namespace vicinity {
 
-enum class FeatureKind : std::uint8_t { face, edge, vertex };
+/// A sliver is a face with a corner so sharp that its widened sides meet far beyond it.
+enum class FeatureKind : std::uint8_t { face, sliver, edge, vertex };
 
 /// A convex region around one feature, between planes. Lengths are voxels, and positions are told
 /// from a voxel centre near the feature, so that single precision serves.
@@ -19,7 +20,7 @@ enum class FeatureKind : std::uint8_t { face, edge, vertex };
 /// Single precision is only trusted as far as its error is known: planes are moved outwards by more
 /// than it can move them inwards.
 struct alignas(64) NearestRegion {
-  static constexpr std::size_t most_planes = 6;
+  static constexpr std::size_t most_planes = 7;
 
   NearestRegion() = default;
   /// @param at       a point of the feature, in grid coordinates

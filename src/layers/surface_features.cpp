@@ -23,6 +23,10 @@ constexpr double widening = 1e-6;
 /// than half of it farther away. A higher triangle's normal is good enough, see Face::slop.
 constexpr double least_height = 2e-6;
 
+/// A face whose height is less than this part of its longest side is a sliver. At this height the
+/// sharpest corner's sides, widened, meet ten times as far off as they were widened.
+constexpr double blunt = 0.2;
+
 }  // namespace
 
 SurfaceFeatures::SurfaceFeatures(const TriangleMesh& mesh, const Workspace& workspace, double reach)
@@ -130,27 +134,38 @@ bool SurfaceFeatures::region_of(std::size_t feature, NearestRegion& region) cons
 }
 
 double SurfaceFeatures::squared_distance(std::size_t feature, const Vec3& p) const {
-  if (feature < faces_.size()) {
-    const Face& face = faces_[feature];
-    for (const auto& [from, to] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 2)}) {
-      const std::uint32_t a = face.vertices[static_cast<std::size_t>(from)];
-      const std::uint32_t b = face.vertices[static_cast<std::size_t>(to)];
-      const Vec3 out = out_of_face(face, a, b);
-      if (out.dot(p - points_[a]) > (widening + face.slop) * out.norm()) {
-        return std::numeric_limits<double>::infinity();
-      }
-    }
-    const double away = face.normal.dot(p - points_[face.vertices[0]]);
-    return away * away;
-  }
-  feature -= faces_.size();
-  if (feature < edges_.size()) {
-    const Vec3 &a = points_[edges_[feature].a], &b = points_[edges_[feature].b];
+  const auto to_segment = [&](std::uint32_t from, std::uint32_t to) {
+    const Vec3 &a = points_[from], &b = points_[to];
     const double length = (b - a).norm();
     const Vec3 along = (b - a) / length;
     return (p - a - std::clamp(along.dot(p - a), 0.0, length) * along).squaredNorm();
+  };
+  if (feature < faces_.size()) {
+    const Face& face = faces_[feature];
+    const auto& [u, v, w] = face.vertices;
+    bool in_front = true;
+    for (const auto& [from, to] : {std::pair(u, v), std::pair(v, w), std::pair(u, w)}) {
+      in_front &= out_of_face(face, from, to).dot(p - points_[from]) <= 0;
+    }
+    if (!in_front) return std::min({to_segment(u, v), to_segment(v, w), to_segment(u, w)});
+    const double away = face.normal.dot(p - points_[u]);
+    return away * away;
   }
+  feature -= faces_.size();
+  if (feature < edges_.size()) return to_segment(edges_[feature].a, edges_[feature].b);
   return (p - points_[used_vertices_[feature - edges_.size()]]).squaredNorm();
+}
+
+std::pair<SurfaceFeatures::LongestSide, double> SurfaceFeatures::longest_side(
+    const Face& face) const {
+  const auto& [u, v, w] = face.vertices;
+  LongestSide longest{u, v, 0};
+  for (const auto& [from, to] : {std::pair(u, v), std::pair(v, w), std::pair(u, w)}) {
+    const double length = (points_[to] - points_[from]).norm();
+    if (length > longest.length) longest = {from, to, length};
+  }
+  const double twice_area = (points_[v] - points_[u]).cross(points_[w] - points_[u]).norm();
+  return {longest, twice_area / longest.length};
 }
 
 bool SurfaceFeatures::face_region(const Face& face, NearestRegion& region) const {
@@ -166,6 +181,15 @@ bool SurfaceFeatures::face_region(const Face& face, NearestRegion& region) const
     const std::uint32_t v = face.vertices[static_cast<std::size_t>(to)];
     region.keep_behind(out_of_face(face, u, v), points_[u], (points_[v] - points_[u]).lpNorm<1>(),
                        face.slop);
+  }
+  // A triangle lies between the planes square to its longest side at both ends.
+  const auto [longest, height] = longest_side(face);
+  if (height < blunt * longest.length) {
+    region.kind = FeatureKind::sliver;
+    const Vec3 &from = points_[longest.from], &to = points_[longest.to];
+    const Vec3 along = (to - from) / longest.length;
+    region.keep_behind(-along, from, 1, 0);
+    region.keep_behind(along, to, 1, 0);
   }
   region.keep_behind(n, a, 1, reach_);
   region.keep_behind(-n, a, 1, reach_);

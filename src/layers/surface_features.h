@@ -18,9 +18,10 @@
 /// matters.
 ///
 /// A region may only ever be too large, never too small: then no centre falls between two regions.
-/// A segment or a point is a part of the surface, so that its distance is right wherever it is
-/// taken; a plane's, taken a millionth of a voxel outside of its triangle, is at most that
-/// millionth too small.
+/// A segment, a point or a triangle is a part of the surface, so that its distance is right
+/// wherever it is taken. A plane's, in single precision, is taken a little outside of its triangle
+/// as well, and counts as so much less sure; beyond sharp corners, where sides that are widened
+/// meet far off, two more planes cut the region.
 ///
 /// Grid coordinates here have voxel centres at integers, and the voxel's length is 1.
 #pragma once
@@ -29,6 +30,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "nearest_region.h"
 #include "vicinity/mesh/triangle_mesh.h"
@@ -51,7 +53,7 @@ class SurfaceFeatures {
   /// Builds the region of a feature. False where no centre can be nearest to it.
   bool region_of(std::size_t feature, NearestRegion& region) const;
 
-  /// Squared distance from p to a feature; infinite for a face that p is not in front of.
+  /// Squared distance from p to a feature, of a face to the triangle itself.
   double squared_distance(std::size_t feature, const Vec3& p) const;
 
  private:
@@ -68,6 +70,13 @@ class SurfaceFeatures {
     std::uint32_t first_face, face_count;
   };
 
+  struct LongestSide {
+    std::uint32_t from, to;
+    double length;
+  };
+
+  /// And the height of the triangle over it.
+  std::pair<LongestSide, double> longest_side(const Face& face) const;
   Face make_face(std::array<std::uint32_t, 3> triangle) const;
   void join_edges();
   void join_vertices();
