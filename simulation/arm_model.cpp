@@ -75,7 +75,8 @@ class Writer {
         std::max(0.005, 2 * options_.step_s), options_.step_s);
     for (int n = 0; n < options_.contact_boxes; ++n) {
       text_ += fmt::format(
-          "<geom name=\"box_{}\" type=\"box\" size=\"1 1 1\" contype=\"0\" conaffinity=\"0\"/>\n", n);
+          "<geom name=\"box_{}\" type=\"box\" size=\"1 1 1\" contype=\"0\" conaffinity=\"0\"/>\n",
+          n);
     }
     body(0, options_.X_WB, nullptr);
     text_ += "</worldbody>\n</mujoco>\n";
@@ -87,18 +88,18 @@ class Writer {
     const Link& here = robot_.links[link];
     text_ += fmt::format("<body name=\"{}\" {}>\n", escaped(here.name), placed(X_PL));
     if (joint && joint->type != JointType::fixed) {
-      text_ += fmt::format(
-          "<joint name=\"{}\" type=\"{}\" axis=\"{}\" armature=\"{:.17g}\"/>\n",
-          escaped(joint->name), joint->type == JointType::prismatic ? "slide" : "hinge",
-          numbers(joint->axis_J), options_.armature);
+      text_ +=
+          fmt::format("<joint name=\"{}\" type=\"{}\" axis=\"{}\" armature=\"{:.17g}\"/>\n",
+                      escaped(joint->name), joint->type == JointType::prismatic ? "slide" : "hinge",
+                      numbers(joint->axis_J), options_.armature);
     }
     if (here.inertia) inertia(*here.inertia);
     const bool may_touch = link > 0 && moved(link);
     for (const Capsule& capsule : may_touch ? capsules_of(here) : std::vector<Capsule>()) {
       const bool ball = (capsule.to - capsule.from).norm() < 1e-9;
       text_ += ball ? fmt::format("<geom type=\"sphere\" pos=\"{}\" ", numbers(capsule.from))
-                    : fmt::format("<geom type=\"capsule\" fromto=\"{} {}\" ",
-                                  numbers(capsule.from), numbers(capsule.to));
+                    : fmt::format("<geom type=\"capsule\" fromto=\"{} {}\" ", numbers(capsule.from),
+                                  numbers(capsule.to));
       text_ += fmt::format("size=\"{:.17g}\" contype=\"2\" conaffinity=\"1\"/>\n", capsule.radius);
     }
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) {

@@ -14,7 +14,8 @@ namespace vicinity {
 
 /// Capsules that fill a link's geometries from within: each geometry's bounding box, in the link's
 /// axes, filled by parallel capsules along its longest side, as thick as its shortest. A cylinder
-/// along an axis of the link is met exactly, but for the edges of its ends; a box but for its edges.
+/// along an axis of the link is met exactly, but for the edges of its ends; a box but for its
+/// edges.
 std::vector<Capsule> capsules_of(const Link& link);
 
 /// What the model text is made for.

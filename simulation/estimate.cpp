@@ -11,8 +11,8 @@ namespace {
 
 constexpr double z = 1.959964;  // of 95 %, two sides
 
-// Student's quantile from the normal one (Cornish & Fisher 1938): off by less than 1 % from 4 degrees
-// of freedom on.
+// Student's quantile from the normal one (Cornish & Fisher 1938): off by less than 1 % from 4
+// degrees of freedom on.
 double student(double freedom) {
   const double z3 = z * z * z, z5 = z3 * z * z;
   return z + (z3 + z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * z) / (96 * freedom * freedom);

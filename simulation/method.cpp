@@ -73,7 +73,8 @@ std::vector<Method> all_methods() {
 ViscosityField coded(const ViscosityField& field, const std::string& coding) {
   std::vector<Coding> codings;
   for (const FieldObject& object : field.objects()) {
-    Coding each = coding == "paper" && object.q > 6 ? object.coding : named_coding(coding, object.q);
+    Coding each =
+        coding == "paper" && object.q > 6 ? object.coding : named_coding(coding, object.q);
     each.skin = object.coding.skin;
     codings.push_back(std::move(each));
   }
@@ -108,7 +109,8 @@ FittedAid fit_aid(const Workplace& place, const Method& method, const Device& de
   const auto distance = [&] {
     return ArmDistance(place.robot, place.points, place.distance, place.distance_clearance);
   };
-  const HandleLimits limits{place.tool_link, device.force_limit.value_or(HandleLimits{}.force_limit)};
+  const HandleLimits limits{place.tool_link,
+                            device.force_limit.value_or(HandleLimits{}.force_limit)};
   switch (method.kind) {
     case MethodKind::none:
       fitted.aid = std::make_unique<NoAid>(3);

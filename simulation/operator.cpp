@@ -10,7 +10,7 @@ namespace vicinity {
 namespace {
 
 constexpr double never = -1;
-constexpr double slowest_felt = 0.005;   // below, force by speed says nothing [m/s]
+constexpr double slowest_felt = 0.005;     // below, force by speed says nothing [m/s]
 constexpr double level_constant_s = 0.03;  // resistance is felt over some tens of milliseconds
 constexpr int most_corrections = 8;
 constexpr double bump_noticed = 1;  // reflected contact that is not taken for inertia [N]
@@ -48,7 +48,9 @@ Vec3 Operator::act(double time_s, double period_s, const Senses& senses) noexcep
     started_ = true;
     wanted_ = senses.handle;
     leg_ = 1;
-    plan(time_s, senses.handle, intent_.path_W[1] + (intent_.path_W.size() == 2 ? aim_error_ : Vec3::Zero().eval()), intent_.speed);
+    plan(time_s, senses.handle,
+         intent_.path_W[1] + (intent_.path_W.size() == 2 ? aim_error_ : Vec3::Zero().eval()),
+         intent_.speed);
   }
   feel(time_s, period_s, senses);
   heed(time_s);

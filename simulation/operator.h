@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-/// A simulated operator: plans smoothly, executes noisily, sees badly, feels with limits, reacts late.
+/// A simulated operator: plans smoothly, executes noisily, sees badly, feels with limits, reacts
+/// late.
 ///
 ///   seen goal --> minimum jerk --> + execution noise --> arm impedance --> force on the handle
 ///      ^              ^                                                         |
@@ -17,8 +18,8 @@
 
 namespace vicinity {
 
-/// Numbers of a grown, healthy person. Each says where it is from; `chosen` is ours, and the study's
-/// results hold for it alone.
+/// Numbers of a grown, healthy person. Each says where it is from; `chosen` is ours, and the
+/// study's results hold for it alone.
 struct OperatorParameters {
   // How the arm yields. Hogan 1985, Mussa-Ivaldi, Hogan & Bizzi 1985 and Tsuji et al. 1995 measured
   // hands in posture: 100 to 500 N/m, 5 to 30 N·s/m, 0.7 to 2 kg, by direction and tension.
@@ -32,7 +33,7 @@ struct OperatorParameters {
 
   // Signal-dependent noise (Harris & Wolpert 1998). This much spreads a reach by some 4 % of its
   // length, as van Beers, Haggard & Wolpert 2004 saw.
-  double noise = 0.1;               ///< s.d. of the velocity, relative to the intended one
+  double noise = 0.1;                 ///< s.d. of the velocity, relative to the intended one
   double noise_correlation_s = 0.15;  ///< chosen: a few corrections a second
 
   // Just noticeable differences: viscosity 19 to 34 % (Jones & Hunter 1993), force 7 to 10 % (Pang,
@@ -45,23 +46,23 @@ struct OperatorParameters {
   /// Chosen, near the own damping of good devices.
   double own_resistance = 3;  ///< [N·s/m]
 
-  // The eye. A camera that is poor or absent is the paper's reason to exist; nothing is measured for
-  // it. Chosen.
+  // The eye. A camera that is poor or absent is the paper's reason to exist; nothing is measured
+  // for it. Chosen.
   double depth_error_m = 0.02;    ///< s.d., along the line of sight, one for each trial
   double across_error_m = 0.005;  ///< s.d., across it
   double tolerance_m = 0.006;     ///< what is seen as there
 
   // What he does with what he feels. Chosen.
-  double caution = 0.6;            ///< each noticed rise of resistance slows the motion by this
-  double least_pace = 0.2;         ///< and never below this share of the intended one
-  double creep_speed = 0.04;       ///< on, where sight says "there" and the hand does not yet [m/s]
-  double creep_most = 2;           ///< for so many s.d. of the depth error
+  double caution = 0.6;       ///< each noticed rise of resistance slows the motion by this
+  double least_pace = 0.2;    ///< and never below this share of the intended one
+  double creep_speed = 0.04;  ///< on, where sight says "there" and the hand does not yet [m/s]
+  double creep_most = 2;      ///< for so many s.d. of the depth error
 };
 
 /// What the operator wants.
 struct Intent {
   std::vector<Vec3> path_W;  ///< of the tool, from where it is on, shape (n >= 2) [m]
-  double speed = 0.25;       ///< mean along the path; a minimum-jerk motion peaks at 1.875 of it [m/s]
+  double speed = 0.25;  ///< mean along the path; a minimum-jerk motion peaks at 1.875 of it [m/s]
   Vec3 sight_W = Vec3::UnitY();  ///< along the line of sight
   bool stops_by_feel = false;    ///< at a part: stops where it feels as it did in training
   bool careful = true;           ///< slows down where resistance rises; not who leaves in haste
@@ -82,8 +83,8 @@ struct Training {
 /// What he knows in one tick.
 struct Senses {
   Vec3 handle = Vec3::Zero(), velocity = Vec3::Zero();  ///< his own hand, in W [m], [m/s]
-  Vec3 felt = Vec3::Zero();      ///< what the aid does to the hand, in W          [N]
-  double bump = 0;               ///< reflected contact, beyond the usual          [N]
+  Vec3 felt = Vec3::Zero();       ///< what the aid does to the hand, in W          [N]
+  double bump = 0;                ///< reflected contact, beyond the usual          [N]
   Vec3 seen_tool = Vec3::Zero();  ///< the slave's tool as the picture has it, late [m]
 };
 

@@ -84,10 +84,9 @@ const std::vector<NearPoint>& ArmDistance::look(const double* q, const Pose& X_W
 }
 
 const NearPoint* ArmDistance::nearest() const noexcept {
-  const auto found =
-      std::min_element(near_.begin(), near_.end(), [](const NearPoint& a, const NearPoint& b) {
-        return a.distance_m < b.distance_m;
-      });
+  const auto found = std::min_element(
+      near_.begin(), near_.end(),
+      [](const NearPoint& a, const NearPoint& b) { return a.distance_m < b.distance_m; });
   return found == near_.end() ? nullptr : &*found;
 }
 
@@ -130,8 +129,7 @@ AidForce VirtualFixture::feel(const Input& input) noexcept {
   std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
   const Vec3 force_W = -stiffness_ * (barrier_m_ - nearest->distance_m) *
                        towards_surface(distance_.field(), nearest->p_W);
-  add(wrenches_[nearest->link], force_W,
-      nearest->p_W - distance_.kinematics().p_WL(nearest->link));
+  add(wrenches_[nearest->link], force_W, nearest->p_W - distance_.kinematics().p_WL(nearest->link));
   return capped(at_handle(distance_, wrenches_, limits_.tool_link, distance_.kinematics()),
                 limits_.force_limit);
 }

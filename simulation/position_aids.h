@@ -86,8 +86,8 @@ class PotentialField final : public Aid {
   std::vector<Wrench> wrenches_;
 };
 
-/// Virtual fixture (Rosenberg 1993; the barrier of the paper's [12]): a spring from a barrier around
-/// every surface, for the point that is deepest beyond it.
+/// Virtual fixture (Rosenberg 1993; the barrier of the paper's [12]): a spring from a barrier
+/// around every surface, for the point that is deepest beyond it.
 class VirtualFixture final : public Aid {
  public:
   VirtualFixture(ArmDistance distance, double stiffness, double barrier_m,

@@ -275,8 +275,7 @@ StudyResult run_study(const Workplace& place, const std::vector<Task>& tasks,
   Runner runner(place, tasks, options);
   StudyResult result;
   result.tunings = tune(runner, tasks, tuned, options.tuning_trials, tuning_share);
-  result.cells =
-      runner.run(cells_of(tasks, tuned, options), options.trials, 0, tuning_share, 1);
+  result.cells = runner.run(cells_of(tasks, tuned, options), options.trials, 0, tuning_share, 1);
   result.stopped = runner.stopped();
   return result;
 }

@@ -18,10 +18,10 @@ namespace vicinity {
 struct StudyOptions {
   int trials = 200;  ///< of each cell
   std::uint64_t seed = 1;
-  int threads = 0;                        ///< 0: as many as the machine has
-  std::vector<std::string> methods = {};  ///< only these; empty: all
+  int threads = 0;                                        ///< 0: as many as the machine has
+  std::vector<std::string> methods = {};                  ///< only these; empty: all
   std::vector<double> delays_s = {0.02, 0.05, 0.1, 0.2};  ///< there and back [s]
-  int tuning_trials = 20;                 ///< of each setting and tuning task
+  int tuning_trials = 20;                                 ///< of each setting and tuning task
   /// What goes on, and how much of the whole is done, 0..1. From any thread, one at a time.
   std::function<void(std::string_view what, double done)> progress = nullptr;
   /// Asked now and then; true ends the study early with what there is.
@@ -40,13 +40,13 @@ enum class Part : std::uint8_t {
 /// What 200 trials say.
 struct Summary {
   int trials = 0;
-  Estimate touched, finished;        ///< shares
-  Estimate impact_speed, peak_force; ///< of the trials that touched
+  Estimate touched, finished;         ///< shares
+  Estimate impact_speed, peak_force;  ///< of the trials that touched
   Estimate overshoot_m, miss_m, time_s, effort, clearance_m, pushed_j;
-  Estimate given_j;                  ///< mean of what the aid gave beyond what it had taken
-  double most_given_j = 0;           ///< of any trial
-  double most_beyond_device_j = 0;   ///< and beyond what the device's own damping had eaten
-  int gave = 0;                      ///< trials in which it gave more than a tenth of a millijoule
+  Estimate given_j;                 ///< mean of what the aid gave beyond what it had taken
+  double most_given_j = 0;          ///< of any trial
+  double most_beyond_device_j = 0;  ///< and beyond what the device's own damping had eaten
+  int gave = 0;                     ///< trials in which it gave more than a tenth of a millijoule
   int blew_up = 0;
 };
 

@@ -24,8 +24,8 @@
 namespace vicinity {
 namespace {
 
-constexpr double stand_off = 0.02;      // of tasks_for() [m]
-constexpr double run_up = 0.2;          // [m]
+constexpr double stand_off = 0.02;  // of tasks_for() [m]
+constexpr double run_up = 0.2;      // [m]
 constexpr int starts_tried = 200;
 
 class TaskReader {
@@ -121,10 +121,10 @@ std::optional<AxisVector> solved(const Workplace& place, const Vec3& p_WT,
     const bool there = missing.head<3>().norm() < 1e-4 && missing.tail<3>().norm() < 1e-3;
     if (there) {
       for (Eigen::Index c = 0; c < q.size(); ++c) {
-        const JointLimits& limits =
-            place.robot.joints[static_cast<std::size_t>(
-                                   place.robot.coordinates[static_cast<std::size_t>(c)])]
-                .limits;
+        const JointLimits& limits = place.robot
+                                        .joints[static_cast<std::size_t>(
+                                            place.robot.coordinates[static_cast<std::size_t>(c)])]
+                                        .limits;
         const double room = std::isfinite(limits.upper - limits.lower) ? 0.05 : 0;
         if (q[c] < limits.lower + room || q[c] > limits.upper - room) return std::nullopt;
       }
@@ -140,8 +140,9 @@ std::optional<AxisVector> solved(const Workplace& place, const Vec3& p_WT,
   return std::nullopt;
 }
 
-// How well the arm goes the way: its least distance from anything, up to 30 mm, and with less weight
-// how far it stays from where it cannot move in some direction. Below zero where it cannot go it.
+// How well the arm goes the way: its least distance from anything, up to 30 mm, and with less
+// weight how far it stays from where it cannot move in some direction. Below zero where it cannot
+// go it.
 double ease_of_the_way(const Workplace& place, const Task& task, const AxisVector& q) {
   constexpr double step_m = 0.002;
   Lead lead(place.robot, AxisKind::cartesian, place.tool_link, place.X_WB);
@@ -170,9 +171,9 @@ double ease_of_the_way(const Workplace& place, const Task& task, const AxisVecto
       const Jacobian J =
           link_jacobian(place.robot, kinematics, static_cast<std::size_t>(place.tool_link));
       const Eigen::Matrix<double, 6, 6> square = J * J.transpose();
-      const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(
-                               square, Eigen::EigenvaluesOnly)
-                               .eigenvalues()[0];
+      const double least =
+          Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(square, Eigen::EigenvaluesOnly)
+              .eigenvalues()[0];
       lever = std::min(lever, std::sqrt(std::max(least, 0.0)));
     }
   }

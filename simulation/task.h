@@ -42,8 +42,9 @@ struct Task {
 std::vector<Task> parse_tasks(std::string_view text, const std::string& where);
 std::vector<Task> read_tasks(const std::filesystem::path& path);
 
-/// Tasks of a scene that has none of its own: for each of a few objects, nearest first, approach and
-/// stop 20 mm before it, and retreat in haste. Errors: throws Error where the arm reaches nothing.
+/// Tasks of a scene that has none of its own: for each of a few objects, nearest first, approach
+/// and stop 20 mm before it, and retreat in haste. Errors: throws Error where the arm reaches
+/// nothing.
 std::vector<Task> tasks_for(const Workplace& place, std::uint64_t seed);
 
 /// Finds a start for each task: joints from which the arm leads its tool along the whole way within

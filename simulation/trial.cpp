@@ -10,10 +10,10 @@
 namespace vicinity {
 namespace {
 
-constexpr double period_s = 0.001;   // of the master
-constexpr double attenuation = 20;   // A: a contact of 100 N is felt as 5 N
-constexpr double settle_s = 0.3;     // watched for so long after the operator believes to be there
-constexpr int clearance_steps = 4;   // of the slave between two looks at its clearance
+constexpr double period_s = 0.001;  // of the master
+constexpr double attenuation = 20;  // A: a contact of 100 N is felt as 5 N
+constexpr double settle_s = 0.3;    // watched for so long after the operator believes to be there
+constexpr int clearance_steps = 4;  // of the slave between two looks at its clearance
 constexpr double training_speed = 0.06;  // [m/s]
 constexpr double training_reach = 0.01;  // this near to the goal counts as there [m]
 
@@ -100,9 +100,8 @@ Trial::Trial(const Workplace& place, const Task& task, const Method& method,
       distance_(place.robot, place.points, place.distance, place.distance_clearance) {}
 
 const Output* Trial::last_tick() const noexcept {
-  return method_.kind == MethodKind::drag
-             ? &static_cast<const DragAid*>(aid_.aid.get())->output()
-             : nullptr;
+  return method_.kind == MethodKind::drag ? &static_cast<const DragAid*>(aid_.aid.get())->output()
+                                          : nullptr;
 }
 
 Training Trial::train() {
@@ -198,8 +197,8 @@ TrialResult Trial::go(const OperatorParameters& person, const Intent& intent,
       done_at = time_s;
       result.finished = true;
     }
-    const bool over = (done_at >= 0 && time_s - done_at >= settle_s + condition_.delay_s) ||
-                      time_s >= limit_s;
+    const bool over =
+        (done_at >= 0 && time_s - done_at >= settle_s + condition_.delay_s) || time_s >= limit_s;
     if (!over) continue;
     result.time_s = done_at >= 0 ? done_at : limit_s;
     result.miss_m = (p_tool - goal).norm();

@@ -30,16 +30,16 @@ struct Condition {
 struct TrialResult {
   bool finished = false;  ///< the operator believed to be there before the task's limit
   bool touched = false;
-  bool blew_up = false;          ///< the physics did: the trial counts as touched and not finished
-  double impact_speed = 0;       ///< at the first touch, along its normal; zero without       [m/s]
-  double peak_force = 0;         ///< of contact                                             [N]
-  double overshoot_m = 0;        ///< of the tool beyond where it was to stop                  [m]
-  double miss_m = 0;             ///< of the tool at the end, from where it was to be          [m]
-  double time_s = 0;             ///< until he believed to be there
-  double effort = 0;             ///< of the hand: its force over time                       [N·s]
-  double clearance_m = 0;        ///< smallest, of any body point, at most the layers' reach   [m]
-  double pushed_j = 0;           ///< work that the aid did on the hand where it pushed along  [J]
-  double given_j = 0;            ///< most that the aid had given beyond what it had taken     [J]
+  bool blew_up = false;     ///< the physics did: the trial counts as touched and not finished
+  double impact_speed = 0;  ///< at the first touch, along its normal; zero without       [m/s]
+  double peak_force = 0;    ///< of contact                                             [N]
+  double overshoot_m = 0;   ///< of the tool beyond where it was to stop                  [m]
+  double miss_m = 0;        ///< of the tool at the end, from where it was to be          [m]
+  double time_s = 0;        ///< until he believed to be there
+  double effort = 0;        ///< of the hand: its force over time                       [N·s]
+  double clearance_m = 0;   ///< smallest, of any body point, at most the layers' reach   [m]
+  double pushed_j = 0;      ///< work that the aid did on the hand where it pushed along  [J]
+  double given_j = 0;       ///< most that the aid had given beyond what it had taken     [J]
   double given_beyond_device_j = 0;  ///< and beyond what the device's own damping ate       [J]
 };
 
@@ -57,8 +57,7 @@ class Trial {
   Training train();
 
   /// Same seed, same hand: whatever the aid, so that aids are compared on the same operators.
-  TrialResult run(std::uint64_t seed, const Training& trained,
-                  const TrialWatcher& watch = nullptr);
+  TrialResult run(std::uint64_t seed, const Training& trained, const TrialWatcher& watch = nullptr);
 
   /// Of the last run, of a drag: the account of the tick itself. Null for other aids.
   const Output* last_tick() const noexcept;

@@ -130,8 +130,7 @@ VoxelBoxes::VoxelBoxes(const ViscosityField& field, const Box& within) {
 
 std::size_t VoxelBoxes::cell_of(const Vec3& p_W, int axis) const noexcept {
   const double cell = (p_W[axis] - hull_.min()[axis]) / cell_size;
-  return static_cast<std::size_t>(
-      std::clamp(cell, 0.0, static_cast<double>(cells_[axis] - 1)));
+  return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(cells_[axis] - 1)));
 }
 
 void VoxelBoxes::sort_into_cells() {

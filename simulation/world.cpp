@@ -19,8 +19,8 @@ namespace vicinity {
 namespace {
 
 constexpr double longest_step_s = 0.005;
-constexpr double box_reach = 0.03;       // boxes that near are in the model [m]
-constexpr std::uint64_t box_steps = 4;   // and chosen anew so often: at 1 m/s, 8 mm later
+constexpr double box_reach = 0.03;      // boxes that near are in the model [m]
+constexpr std::uint64_t box_steps = 4;  // and chosen anew so often: at 1 m/s, 8 mm later
 
 struct FreeModel {
   void operator()(mjModel* model) const noexcept { mj_deleteModel(model); }
@@ -60,8 +60,8 @@ const WorldOptions& checked(const WorldOptions& options) {
     refuse("the time step of the physics cannot be used", options.step_s,
            "more than 0 and at most 0.005 s: beyond, contacts gain energy");
   }
-  if (!(options.servo_frequency_hz > 0) ||
-      !(options.servo_frequency_hz * options.step_s < 0.1) || !(options.servo_damping > 0)) {
+  if (!(options.servo_frequency_hz > 0) || !(options.servo_frequency_hz * options.step_s < 0.1) ||
+      !(options.servo_damping > 0)) {
     refuse("the slave's servo cannot be held stable", options.servo_frequency_hz,
            "a frequency below a tenth of the steps, and damping above zero");
   }
@@ -100,7 +100,8 @@ World::World(const RobotModel& robot, std::shared_ptr<const VoxelBoxes> boxes,
   p.model->opt.gravity[0] = p.model->opt.gravity[1] = 0;
   p.model->opt.gravity[2] = -options.gravity;
   p.data.reset(mj_makeData(p.model.get()));
-  if (!p.data) throw Error({.where = "robot '" + robot.name + "'", .what = "no memory to simulate it"});
+  if (!p.data)
+    throw Error({.where = "robot '" + robot.name + "'", .what = "no memory to simulate it"});
   const auto dofs = static_cast<std::size_t>(p.model->nv);
   p.wanted.resize(dofs);
   p.torque.resize(dofs);
@@ -207,10 +208,9 @@ bool World::step(const AxisVector& q_led, const AxisVector& qd_led) {
     p.torque[dof] = given - data->qfrc_bias[dof];
   }
   mj_step2(model, data);
-  const bool sound = std::all_of(data->qpos, data->qpos + model->nq,
-                                 [](double q) { return std::abs(q) < 1e6; }) &&
-                     std::all_of(data->qvel, data->qvel + model->nv,
-                                 [](double v) { return std::abs(v) < 1e6; });
+  const bool sound =
+      std::all_of(data->qpos, data->qpos + model->nq, [](double q) { return std::abs(q) < 1e6; }) &&
+      std::all_of(data->qvel, data->qvel + model->nv, [](double v) { return std::abs(v) < 1e6; });
   if (!sound || data->warning[mjWARN_BADQACC].number > 0) {
     start(q_);
     return false;
@@ -244,8 +244,8 @@ void World::look_at_contacts() {
     mjtNum twist[6];
     mj_objectVelocity(p.model.get(), p.data.get(), mjOBJ_GEOM, geom, twist, 0);
     const Vec3 turn(twist[0], twist[1], twist[2]), v(twist[3], twist[4], twist[5]);
-    const Vec3 lever = Eigen::Map<const Vec3>(contact.pos) -
-                       Eigen::Map<const Vec3>(p.data->geom_xpos + 3 * geom);
+    const Vec3 lever =
+        Eigen::Map<const Vec3>(contact.pos) - Eigen::Map<const Vec3>(p.data->geom_xpos + 3 * geom);
     const Vec3 v_contact = v + turn.cross(lever);
     const double along = v_contact.dot(Eigen::Map<const Vec3>(contact.frame));
     contacts_.closing_speed =

@@ -147,8 +147,8 @@ class UrdfReader {
     links_.push_back(std::move(link));
   }
 
-  // Only a simulation needs it, which says what is missing: a reader that is after the drag does not
-  // refuse an arm because of it.
+  // Only a simulation needs it, which says what is missing: a reader that is after the drag does
+  // not refuse an arm because of it.
   static std::optional<LinkInertia> inertia_of(const XmlElement& inertial, const XmlElement& mass) {
     const XmlElement* tensor = inertial.child("inertia");
     if (!tensor) return std::nullopt;

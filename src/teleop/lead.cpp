@@ -28,8 +28,8 @@ std::size_t checked_tool(const RobotModel& robot, int tool_link) {
                .expected = "less than " + std::to_string(links)});
 }
 
-// Half the sine of the turn from one orientation to the other, about its axis, in W: nearly the turn
-// itself, where it is small.
+// Half the sine of the turn from one orientation to the other, about its axis, in W: nearly the
+// turn itself, where it is small.
 Vec3 turn_between(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) noexcept {
   Vec3 turn = Vec3::Zero();
   for (int axis = 0; axis < 3; ++axis) turn += 0.5 * from.col(axis).cross(to.col(axis));

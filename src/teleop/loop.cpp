@@ -14,7 +14,8 @@ namespace {
 
 const LoopOptions& checked(const LoopOptions& options, int axes) {
   const auto refuse = [](const char* what, const std::string& found, const std::string& expected) {
-    throw Error({.where = "teleoperation loop", .what = what, .found = found, .expected = expected});
+    throw Error(
+        {.where = "teleoperation loop", .what = what, .found = found, .expected = expected});
   };
   checked(options.master);
   if (!(options.period_s > 0) || !std::isfinite(options.period_s)) {

@@ -35,14 +35,14 @@ enum class Placement : std::uint8_t {
 const char* to_string(Placement placement) noexcept;
 
 struct LoopOptions {
-  double period_s = 0.001;         ///< T of the master                                  [s]
-  int slave_periods = 1;           ///< the slave's controller runs every so many of them, >= 1
-  TransportOptions there, back;    ///< to the slave, and from it
+  double period_s = 0.001;       ///< T of the master                                  [s]
+  int slave_periods = 1;         ///< the slave's controller runs every so many of them, >= 1
+  TransportOptions there, back;  ///< to the slave, and from it
   Placement placement = Placement::local;
-  MasterArm master;                ///< G, A, L and lambda of eq. 10
-  double reflected_limit = 0;      ///< on the norm of the reflected force; zero: none [N or N·m]
-  Eigen::VectorXd encoder_step;    ///< of the master's axes, one value each; empty: exact
-  Eigen::MatrixXd damping;         ///< of the device itself, for the audit; empty: zero
+  MasterArm master;              ///< G, A, L and lambda of eq. 10
+  double reflected_limit = 0;    ///< on the norm of the reflected force; zero: none [N or N·m]
+  Eigen::VectorXd encoder_step;  ///< of the master's axes, one value each; empty: exact
+  Eigen::MatrixXd damping;       ///< of the device itself, for the audit; empty: zero
 };
 
 /// What acts on the master until the next period, shape (n,) each [N or N·m].
