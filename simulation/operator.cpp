@@ -34,9 +34,9 @@ Operator::Operator(const OperatorParameters& parameters, const Intent& intent,
   const auto& range =
       trained.cue == Cue::force ? parameters.force_weber : parameters.viscosity_weber;
   weber_ = range[0] + where * (range[1] - range[0]);
-  // A level is told from another with the same limits: what is noticed three times in four lies
-  // 0.67 standard deviations off.
-  stop_level_ = trained.level * std::exp(weber_ / 0.6745 * error);
+  const double spread =
+      trained.cue == Cue::force ? parameters.force_spread : parameters.viscosity_spread;
+  stop_level_ = trained.level * std::exp(spread * error);
   reference_ = trained.cue == Cue::force ? parameters.least_force : parameters.own_resistance;
   if (trained.cue == Cue::viscosity) level_ = parameters.own_resistance;
   // Too little to be told from nothing is not gone by.

@@ -36,10 +36,15 @@ struct OperatorParameters {
   double noise = 0.1;                 ///< s.d. of the velocity, relative to the intended one
   double noise_correlation_s = 0.15;  ///< chosen: a few corrections a second
 
-  // Just noticeable differences: viscosity 19 to 34 % (Jones & Hunter 1993), force 7 to 10 % (Pang,
-  // Tan & Durlach 1991; Jones 1989). One person has one number of each, drawn for each trial.
+  // Just noticeable differences: viscosity 34 % by adjustment (Jones & Hunter 1993), 19 % by choice
+  // (Jones, Hunter & Lafontaine 1997), force 7 to 10 % (Jones 1989; Pang, Tan & Durlach 1991). One
+  // person has one number of each, drawn for each trial.
   double viscosity_weber[2] = {0.19, 0.34};
   double force_weber[2] = {0.07, 0.10};
+  /// s.d. of a level as judged against one that was learned, relative. Viscosity: 84 % right at 34 %
+  /// and 71 % right at 19 % (the same two) are both 0.34. Force: as much in relation.
+  double viscosity_spread = 0.34;
+  double force_spread = 0.12;
   /// Least force that is noticed while the hand moves. Chosen; 0.1 to 0.5 N are reported.
   double least_force = 0.2;  ///< [N]
   /// What moving the hand and the handle costs anyhow: resistances are told apart from there on.

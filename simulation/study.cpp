@@ -227,7 +227,12 @@ std::vector<Cell> cells_of(const std::vector<Task>& tasks, const std::vector<Met
     return !options.methods.empty() || !is_paper(method) || method.name == "all_II_fading";
   };
   for (const Method& method : tuned) {
-    if (!in_sweep(method) || method.name == "jnd") continue;
+    if (!in_sweep(method)) continue;
+    // Two of ours stand for all four: what differs between them is not the way.
+    const bool ours = method.direction == DragDirection::closing;
+    if (ours && options.methods.empty() && method.name != "closing" && method.name != "rising") {
+      continue;
+    }
     for (const double delay_s : options.delays_s) {
       cells.push_back({Part::delay, 0, method, delayed(delay_s, Placement::remote)});
     }
@@ -240,8 +245,7 @@ std::vector<Cell> cells_of(const std::vector<Task>& tasks, const std::vector<Met
   }
   for (Method method : tuned) {
     if (method.kind != MethodKind::drag || !in_sweep(method)) continue;
-    if (method.name != "all_II_fading" && method.name != "closing" && method.name != "rising" &&
-        options.methods.empty()) {
+    if (method.name != "all_II_fading" && method.name != "rising" && options.methods.empty()) {
       continue;
     }
     method.mode = LimiterMode::strict;

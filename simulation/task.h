@@ -20,7 +20,7 @@ struct Task {
   Intent intent;
   Vec3 tool_z_W = -Vec3::UnitZ();  ///< where the tool points
   Vec3 tool_x_W = Vec3::UnitX();   ///< across it, made square to tool_z_W
-  double limit_s = 10;             ///< who is not done by then has failed [s]
+  double limit_s = 8;              ///< who is not done by then has failed [s]
   AxisVector q_start = {};         ///< found by fit_tasks()
 };
 
@@ -36,7 +36,7 @@ struct Task {
 ///       sight: [0, 1, 0]        along the line of sight; default: along y
 ///       stop: feel              or sight, the default
 ///       haste: false            true: does not slow down for what he feels
-///       limit: 10               [s]
+///       limit: 8                [s]
 ///
 /// Errors: throws Error for text that is no such list, unknown keys and numbers that are none.
 std::vector<Task> parse_tasks(std::string_view text, const std::string& where);

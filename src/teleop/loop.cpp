@@ -86,7 +86,7 @@ const MasterTick& TeleoperationLoop::master(double time_s, const AxisVector& x) 
     if (step > 0) read[a] = step * std::floor(x[a] / step);
   }
   lead_.follow(read, speed_scale_);
-  there_.send(time_s, {lead_.q()});
+  there_.send(time_s, {time_s, lead_.q()});
   const Answer* const answer = back_.receive(time_s);
   if (answer != nullptr) torque_ = answer->torque;
   if (options_.placement == Placement::local) {
@@ -117,7 +117,7 @@ const AxisVector& TeleoperationLoop::slave(double time_s, const AxisVector& tau2
   if (led != nullptr) command_ = led->q;
   Answer answer{tau2, aid_force_, false};
   if (options_.placement == Placement::remote && led != nullptr) {
-    const AidForce felt = aid_.feel(input(time_s, command_));
+    const AidForce felt = aid_.feel(input(led->time_s, command_));
     answer.aid = felt.force;
     answer.felt = true;
     // A scaled motion is scaled where it is led: nothing of it waits for the way back.

@@ -114,7 +114,7 @@ TEST(Simulate, AStudyOfOnesOwnIsTheSameOnOneAndTwoThreadsAndReplays) {
   EXPECT_EQ(answer.err, "");
   EXPECT_THAT(answer.out, AllOf(HasSubstr("rising"), HasSubstr("touched")));
   const std::string trials = text_of(bench.folder / "s/trials.csv");
-  EXPECT_THAT(text_of(bench.folder / "s/index.html"), HasSubstr("Jones &amp; Hunter 1993"));
+  EXPECT_THAT(text_of(bench.folder / "s/index.html"), HasSubstr("Jones &amp; Hunter 1993 (0.34)"));
   ASSERT_EQ(with("2").code, 0);
   EXPECT_EQ(text_of(bench.folder / "s/trials.csv"), trials);
 

@@ -54,9 +54,12 @@ Scene scene_of(const SimulateOptions& options) {
   return scene;
 }
 
-Arm arm_of(const SimulateOptions& options) {
-  if (!options.demo || !options.arm.robot.empty()) return read_arm(options.arm);
-  return hot_cell_arm(options.arm);
+Arm arm_of(const SimulateOptions& options, const Scene& scene) {
+  if (options.demo && options.arm.robot.empty()) return hot_cell_arm(options.arm);
+  ArmOptions arm = options.arm;
+  // A robot that is given needs none of the scene's; what it stands on may be a scene without one.
+  if (!options.demo && !scene.robot && !arm.robot.empty()) arm.scene.clear();
+  return read_arm(arm);
 }
 
 std::vector<std::string> excluded(const SimulateOptions& options, const Scene& scene) {
@@ -78,7 +81,7 @@ Prepared prepare(const SimulateOptions& options) {
                  .hint = "SCENE, or --demo"});
   }
   const Scene scene = scene_of(options);
-  Arm arm = arm_of(options);
+  Arm arm = arm_of(options, scene);
   const int links = static_cast<int>(arm.robot.links.size());
   const int tool = arm.teleoperation.tool_link < 0 ? links - 1 : arm.teleoperation.tool_link;
   Prepared prepared;

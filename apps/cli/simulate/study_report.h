@@ -20,11 +20,11 @@ struct StudyReport {
   const StudyResult& study;
   const std::vector<Task>& tasks;
   const StudyOptions& options;
-  std::string place;                    ///< scene and arm, in words
-  std::string command;                  ///< that makes it again
+  std::string place = {};                    ///< scene and arm, in words
+  std::string command = {};                  ///< that makes it again
   double seconds = 0;                   ///< that the whole took
-  std::vector<std::string> recordings;  ///< files, relative to the folder
-  std::string replay;                   ///< a command that plays one of them
+  std::vector<std::string> recordings = {};  ///< files, relative to the folder
+  std::string replay = {};                   ///< a command that plays one of them
 };
 
 /// A claim of the paper's, or of ours, and what the numbers say. Where ranges overlap nothing is

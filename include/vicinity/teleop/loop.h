@@ -78,6 +78,7 @@ class TeleoperationLoop {
 
  private:
   struct Leading {
+    double time_s = 0;  // when the master stood there: velocities come of that, not of arrivals
     AxisVector q;
   };
   struct Answer {
