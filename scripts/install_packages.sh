@@ -18,6 +18,7 @@ packages=(
   libcairo2-dev fonts-dejavu-core    # pictures
   libembree-dev                      # the report's measured peer: nearest surface by a tree
   libopenvdb-dev libboost-iostreams-dev # export to .vdb
+  libmujoco-dev libqhull-dev         # simulated arms; the first cannot be found without the second
   libgtest-dev libgmock-dev          # tests
   liburdfdom-dev liborocos-kdl-dev   # tests: robots and kinematics by another route
 )
