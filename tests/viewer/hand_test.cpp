@@ -86,7 +86,9 @@ TEST(Hand, ComesToThePointerWithoutPassingIt) {
       ASSERT_GE(slide.hand.qd()[0], -1e-6) << "drag turned the motion round at " << drag;
     }
     EXPECT_LE(farthest, 0.2 + 1e-4) << drag;
-    if (drag <= 100) EXPECT_NEAR(farthest, 0.2, 1e-3) << drag;
+    if (drag <= 100) {
+      EXPECT_NEAR(farthest, 0.2, 1e-3) << drag;
+    }
   }
 }
 

@@ -214,7 +214,9 @@ TEST(Frames, MessagesArriveWholeHoweverTheirBytesAreCutUp) {
         ASSERT_NE(result, FrameReader::Result::refused) << "seed " << seed;
         if (result == FrameReader::Result::need_more) break;
         if (reader.opcode() == Opcode::binary) came.push_back(reader.payload());
-        if (reader.opcode() == Opcode::ping) ASSERT_EQ(reader.payload(), "ping");
+        if (reader.opcode() == Opcode::ping) {
+          ASSERT_EQ(reader.payload(), "ping");
+        }
       }
     }
     ASSERT_EQ(came, sent) << "seed " << seed;

@@ -21,7 +21,9 @@ namespace {
 void expect_same(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.voxel_size, b.voxel_size);
   ASSERT_EQ(a.bounds.has_value(), b.bounds.has_value());
-  if (a.bounds) EXPECT_TRUE(a.bounds->isApprox(*b.bounds, 0));
+  if (a.bounds) {
+    EXPECT_TRUE(a.bounds->isApprox(*b.bounds, 0));
+  }
   ASSERT_EQ(a.objects.size(), b.objects.size());
   for (std::size_t n = 0; n < a.objects.size(); ++n) {
     const SceneObject &x = a.objects[n], &y = b.objects[n];
