@@ -52,7 +52,7 @@ const canvas = byId<HTMLCanvasElement>("canvas");
 const stage = new Stage(canvas);
 const shown: Shown = {
   shells: new Set(),
-  opacity: 0.16,
+  opacity: 0.22,
   slice: asked.slice !== "off",
   cutAway: asked.cutAway ?? true,
   colouring: "rank",
@@ -401,14 +401,16 @@ window.addEventListener("drop", (event) => {
 });
 document.addEventListener("visibilitychange", () => session.setRate(document.hidden ? 0 : 60));
 
-// For scripts and a curious person: what the page last heard, how long its frames took [ms], and
-// where on the page the tool is [px].
+// For scripts and a curious person: what the page last heard, how long its frames took [ms], where
+// on the page the tool is [px], the view as a picture, and which voxels the slice shows.
 Object.assign(window, {
   vicinity: {
     hello: () => session.hello,
     snapshot: () => session.snapshot,
     frameTimes: () => [...stage.frameTimes],
     toolOnPage: () => stage.onPage(handle.place),
+    picture: () => stage.picture(),
+    slice: () => `${workplace?.slice.latest?.axis} ${workplace?.slice.latest?.index}`,
   },
 });
 

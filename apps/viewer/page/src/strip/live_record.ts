@@ -10,14 +10,16 @@ export interface Quantity {
   unit: string;
   title: string;
   digits: number;
+  /** What the axis shows at least, so that nothing looks like something only where it is. */
+  least: number;
 }
 
 export const quantities: readonly Quantity[] = [
-  { name: "force", unit: "N", title: "Norm of all drag at the tool", digits: 3 },
-  { name: "viscosity", unit: "N·s/m³", title: "Highest effective viscosity of any body point", digits: 1 },
-  { name: "speed", unit: "m/s", title: "Speed of the tool", digits: 3 },
-  { name: "energy", unit: "J", title: "Energy that the drag has taken out", digits: 3 },
-  { name: "tick time", unit: "µs", title: "99th percentile over the last second", digits: 1 },
+  { name: "force", unit: "N", title: "Norm of all drag at the tool", digits: 3, least: 0.1 },
+  { name: "viscosity", unit: "N·s/m³", title: "Highest effective viscosity of any body point", digits: 1, least: 10 },
+  { name: "speed", unit: "m/s", title: "Speed of the tool", digits: 3, least: 0.05 },
+  { name: "energy", unit: "J", title: "Energy that the drag has taken out", digits: 3, least: 0.01 },
+  { name: "tick time", unit: "µs", title: "99th percentile over the last second", digits: 1, least: 20 },
 ];
 
 /** In the order of `quantities`; the last entry of the record is the status. */

@@ -116,7 +116,7 @@ export class StripChart {
 
   private make(): void {
     const font = "10px system-ui, sans-serif";
-    this.quantities.forEach((_, n) => {
+    this.quantities.forEach(({ least }, n) => {
       const cell = this.cells[n]!;
       const line = (stroke: string, dash?: number[]): uPlot.Series => ({
         stroke,
@@ -133,7 +133,7 @@ export class StripChart {
           padding: [6, 6, 7, 0],
           scales: {
             x: { time: false, auto: false },
-            y: { range: (_plot, low, high) => [Math.min(0, low ?? 0), Math.max(1e-6, (high ?? 1) * 1.08)] },
+            y: { range: (_plot, low, high) => [Math.min(0, low ?? 0), Math.max(least, (high ?? 0) * 1.08)] },
           },
           axes: [
             { show: false },

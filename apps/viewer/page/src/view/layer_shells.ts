@@ -51,7 +51,7 @@ function geometryOf(quads: Uint32Array): BufferGeometry {
 export class LayerShells {
   readonly group = new Group();
   private readonly shells = new Map<number, Shell>();
-  private opacity = 0.16;
+  private opacity = 0.22;
 
   constructor(
     private readonly field: Field,

@@ -67,11 +67,15 @@ export class Stage {
     this.wanted = true;
     requestAnimationFrame(() => {
       this.wanted = false;
-      for (const prepare of this.beforeFrame) prepare();
-      if (this.prepareHalf) this.renderHalves(this.prepareHalf);
-      else this.renderer.render(this.scene, this.camera);
+      this.render();
       this.time();
     });
+  }
+
+  /** The view as it is now, as the address of a PNG. */
+  picture(): string {
+    this.render(); // what was drawn before is gone once it has been shown
+    return this.canvas.toDataURL("image/png");
   }
 
   /** Called before each frame, for what depends on the camera. */
@@ -138,6 +142,12 @@ export class Stage {
       x: (2 * (across - left)) / width - 1,
       y: 1 - (2 * (event.clientY - box.top)) / box.height,
     };
+  }
+
+  private render(): void {
+    for (const prepare of this.beforeFrame) prepare();
+    if (this.prepareHalf) this.renderHalves(this.prepareHalf);
+    else this.renderer.render(this.scene, this.camera);
   }
 
   private time(): void {

@@ -26,9 +26,19 @@ afterAll(async () => {
   await server?.stop();
 });
 
+/** The pixels that WebGL drew, in short. */
 async function picture(page: Page): Promise<string> {
-  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
-  return createHash("sha256").update(await page.locator("#canvas").screenshot()).digest("hex");
+  const png = await page.evaluate(() => (window as never as { vicinity: { picture(): string } }).vicinity.picture());
+  return createHash("sha256").update(png).digest("hex");
+}
+
+/** Waits until the slice that the page has is another one. */
+async function untilCut(page: Page, act: () => Promise<void>): Promise<void> {
+  const index = (): Promise<string> =>
+    page.evaluate(() => (window as never as { vicinity: { slice(): string } }).vicinity.slice());
+  const before = await index();
+  await act();
+  await expect.poll(index, { timeout: 60_000 }).not.toBe(before);
 }
 
 test("the page loads, draws, and its console has nothing to complain about", async () => {
@@ -49,17 +59,17 @@ test("moving the slice changes the picture, and moving it back brings the same o
   await page.keyboard.press("Escape"); // hold: an arm at rest leaves the picture alone
   const where = page.getByLabel("Where the slice is, in metres");
   const cutAt = async (metres: string): Promise<string> => {
-    await where.fill(metres);
-    await where.press("Enter");
-    await page.waitForTimeout(1500);
+    await untilCut(page, async () => {
+      await where.fill(metres);
+      await where.press("Enter");
+    });
     return picture(page);
   };
   const first = await cutAt("1.15");
   const other = await cutAt("0.5");
   expect(other).not.toBe(first);
   expect(await cutAt("1.15")).toBe(first);
-  await page.getByRole("button", { name: "x", exact: true }).click();
-  await page.waitForTimeout(1500);
+  await untilCut(page, () => page.getByRole("button", { name: "x", exact: true }).click());
   expect(await picture(page)).not.toBe(first);
   expect(complaints).toEqual([]);
   await page.context().close();

@@ -86,14 +86,14 @@ export async function openPage(
   const zoom = options.zoom ?? 1;
   const context = await browser.newContext({
     viewport: {
-      width: Math.round((options.width ?? 1000) / zoom),
+      width: Math.round((options.width ?? 1100) / zoom),
       height: Math.round((options.height ?? 640) / zoom),
     },
     deviceScaleFactor: zoom,
     colorScheme: "dark",
   });
   const page = await context.newPage();
-  page.setDefaultTimeout(120_000);
+  page.setDefaultTimeout(60_000);
   const complaints: string[] = [];
   page.on("console", (message) => {
     // A software renderer tells that reading pixels back is slow; that is no fault of the page.
