@@ -220,6 +220,30 @@ TEST(DistanceLayers, AreTrueFarAlongTrianglesOfThousandsOfVoxels) {
   }
 }
 
+TEST(DistanceLayers, AreTrueBeyondTheTipsOfNeedles) {
+  // Centres lie in line with the needle: a little in front of its sides is far from its tip.
+  const VoxelBox box{{0, 0, 0}, {20, 16, 16}};
+  for (const double half_width : {1e-5, 1e-4, 1e-3, 1e-2, 1e-1}) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      SCOPED_TRACE(std::to_string(half_width) + " along axis " + std::to_string(axis));
+      Voxelised object;
+      object.workspace.voxel_size = 1;
+      for (const double off : {-half_width, half_width}) {
+        Vec3 p(8.5, 8.5, 8.5);
+        p[axis] = 2.25;
+        p[(axis + 1) % 3] += off;
+        object.mesh.vertices.push_back(p);
+      }
+      Vec3 tip(8.5, 8.5, 8.5);
+      tip[axis] = 9.3;
+      object.mesh.vertices.push_back(tip);
+      object.mesh.triangles.push_back({0, 1, 2});
+      const SurfaceDistances distances(object.mesh, object.workspace, 2, 4);
+      expect_true_distances(distances.layers(VoxelSet(), VoxelSet(), box), object, 2, 4, box);
+    }
+  }
+}
+
 TEST(DistanceLayers, RoundDownDistancesThatAreWholeSteps) {
   // Everything is a whole number of steps, so that whole numbers tell what is right to the last
   // bit.
