@@ -33,6 +33,7 @@ export class ScenePanel {
   private readonly list = element("ul", { class: "list" });
   private readonly editorPlace = element("div");
   private readonly said = element("div", { role: "status" });
+  private readonly odd = element("div");
   private readonly progress = element("progress", { max: 1, value: 0, "aria-label": "Building" });
   private readonly progressText = element("span", { class: "detail" });
   private readonly progressRow: HTMLElement;
@@ -71,6 +72,7 @@ export class ScenePanel {
           this.buildButton,
         ),
         this.progressRow,
+        this.odd,
         this.said,
       ),
       group(
@@ -114,6 +116,11 @@ export class ScenePanel {
     this.changed();
   }
 
+  /** Another field is in place: what is previewed beside it may be another now. */
+  refresh(): void {
+    this.changed();
+  }
+
   get chosenObject(): SceneObject | null {
     return this.chosen;
   }
@@ -147,7 +154,7 @@ export class ScenePanel {
     this.list.replaceChildren(...rows);
     const odd = oddities(this.draft);
     this.buildButton.disabled = odd.length > 0;
-    this.say(odd.map((sentence) => [sentence, "bad"]));
+    this.odd.replaceChildren(...odd.map((sentence) => element("p", { class: "note bad" }, sentence)));
     this.actions.preview(this.draft, this.chosen, this.editor?.mode ?? "translate");
   }
 
@@ -176,17 +183,17 @@ export class ScenePanel {
 
   private async run(act: () => Promise<string>): Promise<void> {
     try {
-      this.say([[await act(), "good"]]);
+      this.say(await act(), "good");
     } catch (error) {
       this.sayError(error);
     }
   }
 
   private sayError(error: unknown): void {
-    this.say([[error instanceof Error ? error.message : String(error), "bad"]]);
+    this.say(error instanceof Error ? error.message : String(error), "bad");
   }
 
-  private say(sentences: [string, string][]): void {
-    this.said.replaceChildren(...sentences.map(([text, look]) => element("p", { class: `note ${look}` }, text)));
+  private say(sentence: string, look: "good" | "bad"): void {
+    this.said.replaceChildren(element("p", { class: `note ${look}` }, sentence));
   }
 }

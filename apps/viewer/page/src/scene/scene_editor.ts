@@ -60,7 +60,7 @@ export class SceneEditor {
     );
     const isFirst = objectsOf(this.panel.draft).length === 0;
     if (hello.scene && isFirst) this.panel.setDraft(copyOf(hello.scene));
-    else this.panel.choose(null);
+    else this.panel.refresh();
   }
 
   /** Files that were dropped on the page. */
