@@ -22,6 +22,7 @@
 #include "commands/query.h"
 #include "commands/replay.h"
 #include "commands/reproduce.h"
+#include "commands/simulate.h"
 #include "commands/slice.h"
 #include "commands/trace.h"
 #include "interruption.h"
@@ -52,6 +53,7 @@ constexpr const char* welcome =
   vicinity slice F ...          a picture of the layers
   vicinity serve F              see the layers and drive an arm through them, in a browser
   vicinity export F -o ...      for numpy, ParaView, Blender
+  vicinity simulate ...         operators in simulation: does any of it help?
   vicinity reproduce -o DIR     the paper's figures and tables, ours beside theirs
   vicinity bench tick           what the tick of an arm costs on this machine
 
@@ -319,6 +321,41 @@ void add_demo(CLI::App& parent, Run& run) {
   command.runs(demo, run);
 }
 
+void add_simulate(CLI::App& parent, Run& run) {
+  Command<SimulateOptions> command(
+      parent, "simulate", "Let simulated operators work with and without aids, and say which help",
+      "vicinity simulate --demo -o study\n"
+      "  vicinity simulate cell.yaml --trials 20 --method none,closing,rising -o study");
+  auto& [app, options] = command;
+  app.add_option("SCENE", options->arm.scene, "scene with a 'robot' block, or with --robot");
+  app.add_flag("--demo", options->demo, "the demo's hot cell, its arm and six tasks");
+  app.add_option("-o,--output", options->folder, "folder to leave everything in")->required();
+  app.add_option("--trials", options->trials, "operators in each cell")->capture_default_str();
+  app.add_option("--seed", options->seed, "same seed, same numbers")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--method", options->methods,
+                 "only these aids: none, potential_field, virtual_fixture, speed_scaling, "
+                 "all_I_none ... all_II_short, closing, distance, jnd, rising");
+  app.add_option("--tasks", options->tasks,
+                 "YAML file of tasks; default: approaches and retreats made for the scene");
+  app.add_option("--delays", options->delays_ms, "there and back [ms]")->capture_default_str();
+  app.add_option("--step-ms", options->step_ms, "of the physics and the slave's servo, 1 to 5 [ms]")
+      ->capture_default_str();
+  app.add_option("--threads", options->threads, "0: as many as the machine has")
+      ->check(CLI::Range(0, 1024));
+  app.add_option("--robot", options->arm.robot, "URDF file of the arm, with inertia");
+  app.add_option("--base", options->arm.base, "where it stands: x,y,z,roll,pitch,yaw [m, rad]");
+  app.add_option("--packages", options->arm.packages,
+                 "folders for the package:// addresses of its meshes");
+  app.add_option("--exclude", options->arm.exclude, "links that feel nothing: base_link,...");
+  app.add_option("--tool", options->arm.tool, "link that the hand leads; default: the last one");
+  app.add_option("--meshes", options->meshes,
+                 "folder that relative mesh paths start at; default: that of the scene file");
+  app.add_flag("--json", options->json, "for programs");
+  command.runs(simulate, run);
+}
+
 void add_reproduce(CLI::App& parent, Run& run) {
   Command<ReproduceOptions> command(
       parent, "reproduce", "Make every figure and table of the paper, ours beside theirs",
@@ -390,6 +427,7 @@ int run(int argc, char** argv) {
   add_replay(app, chosen);
   add_slice(app, chosen);
   add_export(app, chosen);
+  add_simulate(app, chosen);
   add_reproduce(app, chosen);
   add_bench(app, chosen);
 #ifdef VICINITY_VIEWER

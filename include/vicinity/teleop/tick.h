@@ -145,6 +145,10 @@ class Teleoperation {
   /// may be near something, and in their points; no allocation, lock, system call or exception.
   [[nodiscard]] Status tick(const Input& input, Output& output) noexcept;
 
+  /// Forgets all that was: the next tick is the first one, and the audit and the counts begin anew.
+  /// Not while another thread ticks.
+  void restart() noexcept;
+
   /// Puts another field, or the same with other codings, in place of this one from the next tick
   /// on. The tick takes it whole or not at all, and never waits. Not for the tick's own thread:
   /// prepares the field (milliseconds) and frees the one that was given up before. One caller at a
