@@ -237,37 +237,43 @@ TriangleMesh read_ascii_parts(std::ifstream& file, const std::filesystem::path& 
                               std::size_t size) {
   struct Part {
     std::string text;
-    bool first, last;
+    bool first = false, last = false;
     std::vector<std::array<Vec3, 3>> corners;
   };
-  using Pointer = std::shared_ptr<Part>;
+  // A pipeline that an exception ends forgets what was on its way through it, so the parts are
+  // ours. They are done with in the order they were read in: the oldest one is free whenever one is
+  // read.
+  std::vector<Part> parts(4 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
   VertexWeld weld(size / bytes_per_facet);
+  std::size_t parts_read = 0;
   std::string rest;  // behind the last part
-  bool first = true;
-  const auto read = [&](tbb::flow_control& flow) -> Pointer {
-    if (!first && rest.empty()) {
+  const auto read = [&](tbb::flow_control& flow) -> Part* {
+    if (parts_read > 0 && rest.empty()) {
       flow.stop();
       return nullptr;
     }
-    auto part =
-        std::make_shared<Part>(Part{std::move(rest), std::exchange(first, false), false, {}});
+    Part& part = parts[parts_read % parts.size()];
+    part.text = std::move(rest);
+    part.first = parts_read++ == 0;
+    part.last = false;
     std::size_t cut = 0;
-    while (cut == 0 && !part->last) {
-      if (part->text.size() > most_parts_in_one * part_size) {
+    while (cut == 0 && !part.last) {
+      if (part.text.size() > most_parts_in_one * part_size) {
         throw Error({.where = path.string(), .what = "no line begins with a facet"});
       }
-      const std::size_t had = part->text.size();
-      part->text.resize(had + part_size);
-      file.read(&part->text[had], part_size);
-      part->text.resize(had + static_cast<std::size_t>(file.gcount()));
-      part->last = !file;
-      if (!part->last) cut = last_facet(part->text);
+      const std::size_t had = part.text.size();
+      part.text.resize(had + part_size);
+      file.read(&part.text[had], part_size);
+      part.text.resize(had + static_cast<std::size_t>(file.gcount()));
+      part.last = !file;
+      if (!part.last) cut = last_facet(part.text);
     }
-    rest = part->last ? std::string() : part->text.substr(cut);
-    if (!part->last) part->text.resize(cut);
-    return part;
+    rest = part.last ? std::string() : part.text.substr(cut);
+    if (!part.last) part.text.resize(cut);
+    return &part;
   };
-  const auto parse = [&](Pointer part) {
+  const auto parse = [&](Part* part) {
+    part->corners.clear();
     part->corners.reserve(part->text.size() / bytes_per_facet);
     const bool within =
         AsciiStl(part->text, path).read_part(!part->first, [&](const auto& corners) {
@@ -277,14 +283,12 @@ TriangleMesh read_ascii_parts(std::ifstream& file, const std::filesystem::path& 
     part->text = {};
     return part;
   };
-  const std::size_t parts_at_once =
-      4 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   tbb::parallel_pipeline(
-      parts_at_once,
-      tbb::make_filter<void, Pointer>(tbb::filter_mode::serial_in_order, read) &
-          tbb::make_filter<Pointer, Pointer>(tbb::filter_mode::parallel, parse) &
-          tbb::make_filter<Pointer, void>(tbb::filter_mode::serial_in_order,
-                                          [&](const Pointer& part) { weld.add(part->corners); }));
+      parts.size(),
+      tbb::make_filter<void, Part*>(tbb::filter_mode::serial_in_order, read) &
+          tbb::make_filter<Part*, Part*>(tbb::filter_mode::parallel, parse) &
+          tbb::make_filter<Part*, void>(tbb::filter_mode::serial_in_order,
+                                        [&](const Part* part) { weld.add(part->corners); }));
   return std::move(weld).take();
 }
 
