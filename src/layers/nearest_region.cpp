@@ -24,14 +24,17 @@ NearestRegion::NearestRegion(FeatureKind of_kind, const Vec3& at, double longest
   error = static_cast<float>(rounding * (longest + reach + 16));
 }
 
-void NearestRegion::keep_behind(const Vec3& normal, const Vec3& at, double longest, double slack) {
+void NearestRegion::keep_behind(const Vec3& normal, const Vec3& at, double slack) {
   x[planes] = static_cast<float>(normal.x());
   y[planes] = static_cast<float>(normal.y());
   z[planes] = static_cast<float>(normal.z());
-  const Vec3 from_anchor = at - anchor.cast<double>();
-  offset[planes] = static_cast<float>(normal.dot(from_anchor) +
-                                      longest * (slack + widening + static_cast<double>(error)));
+  const double offset_there = normal.dot(at - anchor.cast<double>());
+  offset[planes] = static_cast<float>(offset_there + slack + widening + static_cast<double>(error));
   ++planes;
+}
+
+void NearestRegion::set_doubt(double slack) {
+  doubt = static_cast<float>(2 * (slack + widening + static_cast<double>(error)));
 }
 
 void NearestRegion::set_bounds(const Box& feature, const Vec3& margin) {

@@ -27,9 +27,12 @@ struct alignas(64) NearestRegion {
   NearestRegion(FeatureKind of_kind, const Vec3& at, double longest, double reach);
 
   /// Leaves out what lies in front of the plane through `at`.
-  /// @param normal  no longer than `longest`
+  /// @param normal  no longer than 1
   /// @param slack   how far in front of the plane the region may still reach
-  void keep_behind(const Vec3& normal, const Vec3& at, double longest, double slack);
+  void keep_behind(const Vec3& normal, const Vec3& at, double slack);
+
+  /// Tells how far behind a plane that was kept with this slack a point may be in front of it.
+  void set_doubt(double slack);
 
   /// Bounds the region by the feature's own and a margin along each axis.
   void set_bounds(const Box& feature, const Vec3& margin);
@@ -56,6 +59,7 @@ struct alignas(64) NearestRegion {
   Eigen::Vector3f direction;  ///< of the face: its normal; of the edge: along it; length 1
   float length = 0;           ///< of the edge
   float error = 0;            ///< how far off a position along `direction` can be
+  float doubt = 0;            ///< of the face: not that far behind its sides, it may be beyond them
   std::uint8_t planes = 0;
   FeatureKind kind = FeatureKind::vertex;
   Eigen::Vector3f lo, hi;  ///< bounds, in grid coordinates

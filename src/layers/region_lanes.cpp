@@ -57,8 +57,9 @@ constexpr float offset_z[4] = {-1.5f, -.5f, .5f, 1.5f};
 // compiled for its instruction sets.
 
 [[gnu::always_inline]] inline void lower_to_face(const NearestRegion& region, float x, float y,
-                                                 float z, float* squared) {
+                                                 float z, float* squared, std::int32_t* doubtful) {
   const float n_x = region.direction[0], n_y = region.direction[1], n_z = region.direction[2];
+  const float region_doubt = region.doubt;
   float in_front[3][layer], away[layer];  // of the three sides, and of the face's plane
   for (std::size_t s = 0; s < 3; ++s) {
     const float s_x = region.x[s], s_y = region.y[s];
@@ -74,12 +75,15 @@ constexpr float offset_z[4] = {-1.5f, -.5f, .5f, 1.5f};
     const float up_0 = offset_z[k] * region.z[0], up_1 = offset_z[k] * region.z[1],
                 up_2 = offset_z[k] * region.z[2], up = offset_z[k] * n_z;
     float* const of_layer = squared + k * layer;
+    std::int32_t* const doubtful_of_layer = doubtful + k * layer;
     for (std::size_t l = 0; l < layer; ++l) {
       const float a = in_front[0][l] + up_0, b = in_front[1][l] + up_1, c = in_front[2][l] + up_2;
       const float ab = a > b ? a : b, most = ab > c ? ab : c;
       const float d = away[l] + up;
       const float square = most > 0 ? std::numeric_limits<float>::infinity() : d * d;
       of_layer[l] = square < of_layer[l] ? square : of_layer[l];
+      doubtful_of_layer[l] |=
+          static_cast<std::int32_t>(most <= 0) & static_cast<std::int32_t>(most > -region_doubt);
     }
   }
 }
@@ -160,6 +164,7 @@ VICINITY_WIDEST_VECTORS
 void measure_cell(std::span<const NearestRegion> regions, std::span<const std::uint32_t> listed,
                   float middle_x, float middle_y, float middle_z, CellDistances& distances) {
   alignas(64) float squared[cell_voxels];  // not known to any other pointer
+  alignas(64) std::int32_t doubtful[cell_voxels] = {};
   for (float& square : squared) square = std::numeric_limits<float>::infinity();
   float error = 0;
   for (const std::uint32_t n : listed) {
@@ -169,7 +174,7 @@ void measure_cell(std::span<const NearestRegion> regions, std::span<const std::u
                 z = middle_z - region.anchor[2];
     switch (region.kind) {
       case FeatureKind::face:
-        lower_to_face(region, x, y, z, squared);
+        lower_to_face(region, x, y, z, squared, doubtful);
         break;
       case FeatureKind::edge:
         lower_to_edge(region, x, y, z, squared);
@@ -180,6 +185,7 @@ void measure_cell(std::span<const NearestRegion> regions, std::span<const std::u
     }
   }
   std::copy_n(squared, cell_voxels, distances.squared);
+  std::copy_n(doubtful, cell_voxels, distances.doubtful);
   distances.error = error;
 }
 
@@ -204,7 +210,8 @@ void round_cell(const CellDistances& distances, const Rounding& rounding, Rounde
     steps[v] = static_cast<std::int32_t>(high * r.steps_per_voxel);
     ranks[v] = static_cast<std::int32_t>(high_s * r.ranks_per_voxel);
     differences[v] = (steps[v] ^ static_cast<std::int32_t>(low * r.steps_per_voxel)) |
-                     (ranks[v] ^ static_cast<std::int32_t>(low_s * r.ranks_per_voxel));
+                     (ranks[v] ^ static_cast<std::int32_t>(low_s * r.ranks_per_voxel)) |
+                     distances.doubtful[v];
   }
   std::uint64_t unsure = 0;
   for (std::size_t v = 0; v < cell_voxels; ++v) {

@@ -19,8 +19,8 @@
 ///
 /// A region may only ever be too large, never too small: then no centre falls between two regions.
 /// A segment or a point is a part of the surface, so that its distance is right wherever it is
-/// taken; a plane's, taken a millionth of a voxel outside of its triangle, is at most that
-/// millionth too small.
+/// taken. A plane's is too small outside of its triangle, and far outside of it even a little
+/// beyond its sides, at the tip of a needle; there the distances to the sides are taken.
 ///
 /// Grid coordinates here have voxel centres at integers, and the voxel's length is 1.
 #pragma once
@@ -51,7 +51,7 @@ class SurfaceFeatures {
   /// Builds the region of a feature. False where no centre can be nearest to it.
   bool region_of(std::size_t feature, NearestRegion& region) const;
 
-  /// Squared distance from p to a feature; infinite for a face that p is not in front of.
+  /// Squared distance from p to a feature; infinite for a face whose region p is not in.
   double squared_distance(std::size_t feature, const Vec3& p) const;
 
  private:
@@ -75,6 +75,12 @@ class SurfaceFeatures {
   bool edge_region(const Edge& edge, NearestRegion& region) const;
   bool vertex_region(std::uint32_t vertex, NearestRegion& region) const;
   bool comes_before(std::uint32_t a, std::uint32_t b) const noexcept;
+
+  /// The sides, each from one vertex to a later one.
+  static std::array<std::array<std::uint32_t, 2>, 3> sides_of(const Face& face) noexcept {
+    const auto& [u, v, w] = face.vertices;
+    return {{{u, v}, {v, w}, {u, w}}};
+  }
 
   /// Square to the face's side from `a` to `b`, in its plane and out of it; as long as the side.
   Vec3 out_of_face(const Face& face, std::uint32_t a, std::uint32_t b) const {

@@ -215,15 +215,39 @@ TEST(DistanceLayers, AreTrueFarAlongTrianglesOfThousandsOfVoxels) {
     }
     const VoxelBox box{{-13, -9, -11}, {10, 12, 9}};
     const SurfaceDistances distances(object.mesh, object.workspace, 3, 3);
-    expect_true_distances(distances.layers({}, {}, box), object, 3, 3, box);
+    expect_true_distances(distances.layers(VoxelSet(), VoxelSet(), box), object, 3, 3, box);
     if (testing::Test::HasFailure()) break;
+  }
+}
+
+TEST(DistanceLayers, AreTrueBeyondTheTipsOfNeedles) {
+  // Centres lie in line with the needle: a little in front of its sides is far from its tip.
+  const VoxelBox box{{0, 0, 0}, {20, 16, 16}};
+  for (const double half_width : {1e-5, 1e-4, 1e-3, 1e-2, 1e-1}) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      SCOPED_TRACE(std::to_string(half_width) + " along axis " + std::to_string(axis));
+      Voxelised object;
+      object.workspace.voxel_size = 1;
+      for (const double off : {-half_width, half_width}) {
+        Vec3 p(8.5, 8.5, 8.5);
+        p[axis] = 2.25;
+        p[(axis + 1) % 3] += off;
+        object.mesh.vertices.push_back(p);
+      }
+      Vec3 tip(8.5, 8.5, 8.5);
+      tip[axis] = 9.3;
+      object.mesh.vertices.push_back(tip);
+      object.mesh.triangles.push_back({0, 1, 2});
+      const SurfaceDistances distances(object.mesh, object.workspace, 2, 4);
+      expect_true_distances(distances.layers(VoxelSet(), VoxelSet(), box), object, 2, 4, box);
+    }
   }
 }
 
 TEST(DistanceLayers, RoundDownDistancesThatAreWholeSteps) {
   // Everything is a whole number of steps, so that whole numbers tell what is right to the last
   // bit.
-  constexpr std::int64_t per_voxel = 128;
+  const std::int64_t per_voxel = 128;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
@@ -236,8 +260,12 @@ TEST(DistanceLayers, RoundDownDistancesThatAreWholeSteps) {
       // Planes through centres, and a whole number of voxels away from them, are common.
       if (seed % 2 == 0) lo[axis] -= lo[axis] % 64, hi[axis] += 64 - hi[axis] % 64;
     }
-    const Vec3 from = Vec3(lo[0], lo[1], lo[2]) / per_voxel,
-               to = Vec3(hi[0], hi[1], hi[2]) / per_voxel;
+    const auto in_voxels = [per_voxel](const std::array<std::int64_t, 3>& steps) -> Vec3 {
+      return Vec3(static_cast<double>(steps[0]), static_cast<double>(steps[1]),
+                  static_cast<double>(steps[2])) /
+             static_cast<double>(per_voxel);
+    };
+    const Vec3 from = in_voxels(lo), to = in_voxels(hi);
     Voxelised object;
     object.workspace.voxel_size = 1;
     object.mesh = primitive::box(to - from);
@@ -247,7 +275,7 @@ TEST(DistanceLayers, RoundDownDistancesThatAreWholeSteps) {
     const int m = 2, q = 4;
     const SurfaceDistances distances(object.mesh, object.workspace, m, q);
     const VoxelBox box{{8, 8, 8}, {44, 44, 44}};
-    const DistanceLayers layers = distances.layers({}, {}, box);
+    const DistanceLayers layers = distances.layers(VoxelSet(), VoxelSet(), box);
     int wrong = 0;
     for (int k = box.lo.k; k < box.hi.k; ++k) {
       for (int j = box.lo.j; j < box.hi.j; ++j) {
