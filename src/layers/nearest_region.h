@@ -20,6 +20,7 @@ enum class FeatureKind : std::uint8_t { face, edge, vertex };
 /// than it can move them inwards.
 struct alignas(64) NearestRegion {
   static constexpr std::size_t most_planes = 6;
+  static constexpr std::size_t padded_planes = 8;  ///< whole vectors
 
   NearestRegion() = default;
   /// @param at       a point of the feature, in grid coordinates
@@ -34,8 +35,8 @@ struct alignas(64) NearestRegion {
   /// Tells how far behind a plane that was kept with this slack a point may be in front of it.
   void set_doubt(double slack);
 
-  /// Bounds the region by the feature's own and a margin along each axis.
-  void set_bounds(const Box& feature, const Vec3& margin);
+  /// The bounds of the region, from the feature's own and a margin along each axis.
+  Eigen::AlignedBox3f bounds(const Box& feature, const Vec3& margin) const;
 
   /// Whether p is in the region; p in grid coordinates, and a voxel centre, so that it is exact.
   bool holds(const Eigen::Vector3f& p) const noexcept {
@@ -53,16 +54,16 @@ struct alignas(64) NearestRegion {
   }
 
   /// Normals and offsets: holds p where normal · (p - anchor) <= offset. Unused ones are 0.
-  float x[most_planes] = {}, y[most_planes] = {}, z[most_planes] = {}, offset[most_planes] = {};
+  float x[padded_planes] = {}, y[padded_planes] = {}, z[padded_planes] = {};
+  float offset[padded_planes] = {};
   Eigen::Vector3f anchor;     ///< the voxel centre, in grid coordinates
   Eigen::Vector3f point;      ///< of the face, the edge (its start) or the vertex; from anchor
   Eigen::Vector3f direction;  ///< of the face: its normal; of the edge: along it; length 1
   float length = 0;           ///< of the edge
-  float error = 0;            ///< how far off a position along `direction` can be
+  float error = 0;            ///< how far off a distance can be by rounded positions
   float doubt = 0;            ///< of the face: not that far behind its sides, it may be beyond them
   std::uint8_t planes = 0;
   FeatureKind kind = FeatureKind::vertex;
-  Eigen::Vector3f lo, hi;  ///< bounds, in grid coordinates
 };
 
 }  // namespace vicinity

@@ -23,8 +23,9 @@ void find_touched(const NearestRegion* regions, std::span<const std::uint32_t> l
     const NearestRegion& region = regions[listed[n]];
     const float anchor_x = region.anchor[0], anchor_y = region.anchor[1],
                 anchor_z = region.anchor[2];
-    float farthest[planes];
-    for (std::size_t p = 0; p < planes; ++p) {
+    float farthest[NearestRegion::padded_planes];
+#pragma GCC unroll 1
+    for (std::size_t p = 0; p < NearestRegion::padded_planes; ++p) {
       farthest[p] = region.offset[p] +
                     (std::abs(region.x[p]) * boxes.half_x + std::abs(region.y[p]) * boxes.half_y +
                      std::abs(region.z[p]) * boxes.half_z);
@@ -192,11 +193,11 @@ void measure_cell(std::span<const NearestRegion> regions, std::span<const std::u
 VICINITY_WIDEST_VECTORS
 void round_cell(const CellDistances& distances, const Rounding& rounding, RoundedCell& rounded) {
   const Rounding r = rounding;  // no store below can change it
-  // Both ends of a distance are off by as much as positions are. Squares are off by rounding: by
+  // Squares are off by rounding: by
   // 6e-7 of the square of the longest side, which is a distance and a cell and a half, and
   // distances by that over twice the distance. Below 0.005, all that matters is that no step is
   // reached.
-  const float error = 2 * distances.error;
+  const float error = distances.error;
   std::int32_t steps[cell_voxels], ranks[cell_voxels], differences[cell_voxels];
   for (std::size_t v = 0; v < cell_voxels; ++v) {
     const float square = distances.squared[v];

@@ -128,11 +128,12 @@ void SurfaceFeatures::join_vertices() {
   }
 }
 
-bool SurfaceFeatures::region_of(std::size_t feature, NearestRegion& region) const {
-  if (feature < faces_.size()) return face_region(faces_[feature], region);
+bool SurfaceFeatures::region_of(std::size_t feature, NearestRegion& region,
+                                Eigen::AlignedBox3f& bounds) const {
+  if (feature < faces_.size()) return face_region(faces_[feature], region, bounds);
   feature -= faces_.size();
-  if (feature < edges_.size()) return edge_region(edges_[feature], region);
-  return vertex_region(used_vertices_[feature - edges_.size()], region);
+  if (feature < edges_.size()) return edge_region(edges_[feature], region, bounds);
+  return vertex_region(used_vertices_[feature - edges_.size()], region, bounds);
 }
 
 double SurfaceFeatures::squared_distance(std::size_t feature, const Vec3& p) const {
@@ -161,13 +162,14 @@ double SurfaceFeatures::squared_distance(std::size_t feature, const Vec3& p) con
   return (p - points_[used_vertices_[feature - edges_.size()]]).squaredNorm();
 }
 
-bool SurfaceFeatures::face_region(const Face& face, NearestRegion& region) const {
+bool SurfaceFeatures::face_region(const Face& face, NearestRegion& region,
+                                  Eigen::AlignedBox3f& bounds) const {
   const Vec3& n = face.normal;
   if (n.isZero(0)) return false;
-  Box bounds;
-  for (const std::uint32_t v : face.vertices) bounds.extend(points_[v]);
+  Box triangle;
+  for (const std::uint32_t v : face.vertices) triangle.extend(points_[v]);
   const Vec3& a = points_[face.vertices[0]];
-  region = NearestRegion(FeatureKind::face, a, bounds.sizes().sum(), reach_);
+  region = NearestRegion(FeatureKind::face, a, triangle.sizes().sum(), reach_);
   region.direction = n.cast<float>();
   for (const auto& [u, v] : sides_of(face)) {
     // Shorter than 1, at least 1 / sqrt(3): good enough, and no root.
@@ -177,11 +179,12 @@ bool SurfaceFeatures::face_region(const Face& face, NearestRegion& region) const
   region.set_doubt(face.slop);
   region.keep_behind(n, a, reach_);
   region.keep_behind(-n, a, reach_);
-  region.set_bounds(bounds, reach_ * n.cwiseAbs() + Vec3::Constant(face.slop));
+  bounds = region.bounds(triangle, reach_ * n.cwiseAbs() + Vec3::Constant(face.slop));
   return true;
 }
 
-bool SurfaceFeatures::edge_region(const Edge& edge, NearestRegion& region) const {
+bool SurfaceFeatures::edge_region(const Edge& edge, NearestRegion& region,
+                                  Eigen::AlignedBox3f& bounds) const {
   const Vec3 &a = points_[edge.a], &b = points_[edge.b];
   const double length = (b - a).norm();
   if (length == 0) return false;
@@ -210,13 +213,15 @@ bool SurfaceFeatures::edge_region(const Edge& edge, NearestRegion& region) const
     region.keep_behind(-middle, a, 2 * slop / bend);
     region.keep_behind(middle, a, reach_);
   }
-  Box bounds(a);
-  bounds.extend(b);
-  region.set_bounds(bounds, reach_ * (Vec3::Ones() - along.cwiseAbs2()).cwiseMax(0).cwiseSqrt());
+  Box segment(a);
+  segment.extend(b);
+  bounds =
+      region.bounds(segment, reach_ * (Vec3::Ones() - along.cwiseAbs2()).cwiseMax(0).cwiseSqrt());
   return true;
 }
 
-bool SurfaceFeatures::vertex_region(std::uint32_t vertex, NearestRegion& region) const {
+bool SurfaceFeatures::vertex_region(std::uint32_t vertex, NearestRegion& region,
+                                    Eigen::AlignedBox3f& bounds) const {
   const Vec3& v = points_[vertex];
   region = NearestRegion(FeatureKind::vertex, v, 0, reach_);
   // All its edges' planes are too many. Four that look far apart, and their mean, come near.
@@ -245,7 +250,7 @@ bool SurfaceFeatures::vertex_region(std::uint32_t vertex, NearestRegion& region)
     region.keep_behind(mean, v, 0);
     region.keep_behind(-mean, v, reach_);
   }
-  region.set_bounds(Box(v), Vec3::Constant(reach_));
+  bounds = region.bounds(Box(v), Vec3::Constant(reach_));
   return true;
 }
 

@@ -48,8 +48,9 @@ class SurfaceFeatures {
   /// The surface's own bounds, without what is in reach of it.
   const Box& bounds() const noexcept { return bounds_; }
 
-  /// Builds the region of a feature. False where no centre can be nearest to it.
-  bool region_of(std::size_t feature, NearestRegion& region) const;
+  /// Builds the region of a feature, with bounds in grid coordinates. False where no centre can be
+  /// nearest to it.
+  bool region_of(std::size_t feature, NearestRegion& region, Eigen::AlignedBox3f& bounds) const;
 
   /// Squared distance from p to a feature; infinite for a face whose region p is not in.
   double squared_distance(std::size_t feature, const Vec3& p) const;
@@ -71,9 +72,10 @@ class SurfaceFeatures {
   Face make_face(std::array<std::uint32_t, 3> triangle) const;
   void join_edges();
   void join_vertices();
-  bool face_region(const Face& face, NearestRegion& region) const;
-  bool edge_region(const Edge& edge, NearestRegion& region) const;
-  bool vertex_region(std::uint32_t vertex, NearestRegion& region) const;
+  bool face_region(const Face& face, NearestRegion& region, Eigen::AlignedBox3f& bounds) const;
+  bool edge_region(const Edge& edge, NearestRegion& region, Eigen::AlignedBox3f& bounds) const;
+  bool vertex_region(std::uint32_t vertex, NearestRegion& region,
+                     Eigen::AlignedBox3f& bounds) const;
   bool comes_before(std::uint32_t a, std::uint32_t b) const noexcept;
 
   /// The sides, each from one vertex to a later one.
