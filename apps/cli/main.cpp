@@ -22,9 +22,13 @@
 #include "commands/query.h"
 #include "commands/replay.h"
 #include "commands/reproduce.h"
+#include "commands/simulate.h"
 #include "commands/slice.h"
 #include "commands/trace.h"
 #include "interruption.h"
+#ifdef VICINITY_VIEWER
+#include "serve.h"
+#endif
 #include "vicinity/geometry/error.h"
 #include "vicinity/geometry/nearest_word.h"
 
@@ -47,7 +51,9 @@ constexpr const char* welcome =
   vicinity trace F ...          the drag on a point along a straight track
   vicinity replay F ...         a joint log of an arm: what its operator would feel
   vicinity slice F ...          a picture of the layers
+  vicinity serve F              see the layers and drive an arm through them, in a browser
   vicinity export F -o ...      for numpy, ParaView, Blender
+  vicinity simulate ...         operators in simulation: does any of it help?
   vicinity reproduce -o DIR     the paper's figures and tables, ours beside theirs
   vicinity bench tick           what the tick of an arm costs on this machine
 
@@ -240,6 +246,38 @@ void add_replay(CLI::App& parent, Run& run) {
   command.runs(replay, run);
 }
 
+#ifdef VICINITY_VIEWER
+void add_serve(CLI::App& parent, Run& run) {
+  Command<viewer::ServeOptions> command(
+      parent, "serve", "Show a field and an arm in a browser, to be looked at and driven",
+      "vicinity serve cell.vicinity --robot arm.urdf --base 0,0,0.8,0,0,0\n"
+      "  vicinity serve scene.yaml");
+  auto& [app, options] = command;
+  app.add_option("INPUT", options->input, "made by vicinity build, or a scene (.yaml, .yml)")
+      ->required();
+  add_arm(app, options->arm);
+  app.add_option("--points-per-m2", options->arm.points_per_m2,
+                 "density of body points; default: 2000");
+  add_feel(app, options->arm);
+  app.add_option("--start", options->start, "where its joints are at first: q,q,... [rad or m]");
+  app.add_option("--port", options->port, "0 takes one that is free")->capture_default_str();
+  app.add_option("--bind", options->bind,
+                 "address to listen at; any but the loopback needs --token")
+      ->capture_default_str();
+  app.add_option("--token", options->token, "what a page must know to be let in");
+  app.add_option("--folder", options->folder, "for uploads, saved scenes and fields")
+      ->capture_default_str();
+  app.add_option("--recording", options->recordings,
+                 "outputs of vicinity replay, and joint logs, that the page can play");
+  app.add_option("--shot", options->shot, "draw the page into this .png, and end");
+  app.add_option("--shot-view", options->shot_view,
+                 "what of it: key=value&key=value, as in the page's address");
+  app.add_option("--seconds", options->seconds, "end after so long; default: Ctrl-C")
+      ->check(CLI::PositiveNumber);
+  command.runs(viewer::serve, run);
+}
+#endif
+
 void add_slice(CLI::App& parent, Run& run) {
   Command<SliceOptions> command(parent, "slice", "Draw the layers in a plane, as a picture",
                                 "vicinity slice cell.vicinity --z 0.04 -o s.png");
@@ -283,6 +321,41 @@ void add_demo(CLI::App& parent, Run& run) {
   command.runs(demo, run);
 }
 
+void add_simulate(CLI::App& parent, Run& run) {
+  Command<SimulateOptions> command(
+      parent, "simulate", "Let simulated operators work with and without aids, and say which help",
+      "vicinity simulate --demo -o study\n"
+      "  vicinity simulate cell.yaml --trials 20 --method none,closing,rising -o study");
+  auto& [app, options] = command;
+  app.add_option("SCENE", options->arm.scene, "scene with a 'robot' block, or with --robot");
+  app.add_flag("--demo", options->demo, "the demo's hot cell, its arm and six tasks");
+  app.add_option("-o,--output", options->folder, "folder to leave everything in")->required();
+  app.add_option("--trials", options->trials, "operators in each cell")->capture_default_str();
+  app.add_option("--seed", options->seed, "same seed, same numbers")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--method", options->methods,
+                 "only these aids: none, potential_field, virtual_fixture, speed_scaling, "
+                 "all_I_none ... all_II_short, closing, distance, jnd, rising");
+  app.add_option("--tasks", options->tasks,
+                 "YAML file of tasks; default: approaches and retreats made for the scene");
+  app.add_option("--delays", options->delays_ms, "there and back [ms]")->capture_default_str();
+  app.add_option("--step-ms", options->step_ms, "of the physics and the slave's servo, 1 to 5 [ms]")
+      ->capture_default_str();
+  app.add_option("--threads", options->threads, "0: as many as the machine has")
+      ->check(CLI::Range(0, 1024));
+  app.add_option("--robot", options->arm.robot, "URDF file of the arm, with inertia");
+  app.add_option("--base", options->arm.base, "where it stands: x,y,z,roll,pitch,yaw [m, rad]");
+  app.add_option("--packages", options->arm.packages,
+                 "folders for the package:// addresses of its meshes");
+  app.add_option("--exclude", options->arm.exclude, "links that feel nothing: base_link,...");
+  app.add_option("--tool", options->arm.tool, "link that the hand leads; default: the last one");
+  app.add_option("--meshes", options->meshes,
+                 "folder that relative mesh paths start at; default: that of the scene file");
+  app.add_flag("--json", options->json, "for programs");
+  command.runs(simulate, run);
+}
+
 void add_reproduce(CLI::App& parent, Run& run) {
   Command<ReproduceOptions> command(
       parent, "reproduce", "Make every figure and table of the paper, ours beside theirs",
@@ -292,6 +365,15 @@ void add_reproduce(CLI::App& parent, Run& run) {
   app.add_option("--only", options->only, "one item, as fig22 or table1");
   command.runs(reproduce, run);
 }
+
+#ifndef VICINITY_VIEWER
+void refuse_serve(int argc, char** argv) {
+  if (argc < 2 || std::string_view(argv[1]) != "serve") return;
+  throw Error({.where = "serve",
+               .what = "this vicinity was built without the viewer",
+               .hint = "building it with -DVICINITY_VIEWER=ON"});
+}
+#endif
 
 // CLI11 only says that a word was not expected; people want to know which one was meant.
 void refuse_unknown_words(const CLI::App& app, int argc, char** argv) {
@@ -345,8 +427,14 @@ int run(int argc, char** argv) {
   add_replay(app, chosen);
   add_slice(app, chosen);
   add_export(app, chosen);
+  add_simulate(app, chosen);
   add_reproduce(app, chosen);
   add_bench(app, chosen);
+#ifdef VICINITY_VIEWER
+  add_serve(app, chosen);
+#else
+  refuse_serve(argc, argv);
+#endif
   app.footer("Example:\n  vicinity demo");
 
   refuse_unknown_words(app, argc, argv);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "widest_vectors.h"
+#include "vicinity/geometry/widest_vectors.h"
 
 namespace vicinity {
 namespace {

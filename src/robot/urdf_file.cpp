@@ -6,7 +6,9 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -140,8 +142,46 @@ class UrdfReader {
                !value || std::strtod(value->c_str(), nullptr) <= 0) {
       without_mass_.push_back(link.name);
     }
+    if (inertial && mass) link.inertia = inertia_of(*inertial, *mass);
     link_of_.emplace(link.name, links_.size());
     links_.push_back(std::move(link));
+  }
+
+  // Only a simulation needs it, which says what is missing: a reader that is after the drag does
+  // not refuse an arm because of it.
+  static std::optional<LinkInertia> inertia_of(const XmlElement& inertial, const XmlElement& mass) {
+    const XmlElement* tensor = inertial.child("inertia");
+    if (!tensor) return std::nullopt;
+    const auto numbers = [](const XmlElement* element, const char* attribute, auto& values) {
+      values.setZero();
+      const std::string* text = element ? element->attribute(attribute) : nullptr;
+      if (!text) return;
+      const char* at = text->c_str();
+      for (Eigen::Index n = 0; n < values.size(); ++n) {
+        char* end = nullptr;
+        values[n] = std::strtod(at, &end);
+        if (end == at) values[n] = std::numeric_limits<double>::quiet_NaN();
+        at = end;
+      }
+    };
+    const auto number = [&](const XmlElement& element, const char* attribute) {
+      Eigen::Matrix<double, 1, 1> value;
+      numbers(&element, attribute, value);
+      return value[0];
+    };
+    LinkInertia inertia;
+    Vec3 xyz, rpy;
+    numbers(inertial.child("origin"), "xyz", xyz);
+    numbers(inertial.child("origin"), "rpy", rpy);
+    inertia.mass = number(mass, "value");
+    inertia.X_LC = pose_from_rpy(xyz, rpy);
+    const double xy = number(*tensor, "ixy"), xz = number(*tensor, "ixz"),
+                 yz = number(*tensor, "iyz");
+    inertia.about_centre << number(*tensor, "ixx"), xy, xz, xy, number(*tensor, "iyy"), yz, xz, yz,
+        number(*tensor, "izz");
+    const bool usable = inertia.mass > 0 && std::isfinite(inertia.mass) &&
+                        inertia.X_LC.matrix().allFinite() && inertia.about_centre.allFinite();
+    return usable ? std::optional(inertia) : std::nullopt;
   }
 
   void remark_links() {

@@ -137,6 +137,21 @@ int Teleoperation::joint_count() const noexcept { return static_cast<int>(q_.siz
 
 const BodyPoints& Teleoperation::points() const noexcept { return body_->points(); }
 
+PointDrag Teleoperation::point_drag(std::uint32_t point) const noexcept {
+  return body_->point_drag(point);
+}
+
+void Teleoperation::restart() noexcept {
+  velocity_.restart();
+  handle_velocity_.restart();
+  if (limiter_) limiter_->restart();
+  audit_.reset();
+  body_->restart();
+  counts_ = {};
+  last_time_s_ = 0;
+  started_ = false;
+}
+
 // tick(), one call per stage.
 Status Teleoperation::tick(const Input& input, Output& output) noexcept {
   ++counts_.ticks;

@@ -14,4 +14,7 @@ extern const std::string_view hot_cell_scene;
 /// The text of scenes/hot_cell_arm.urdf.
 extern const std::string_view hot_cell_arm_urdf;
 
+/// The text of scenes/hot_cell_tasks.yaml.
+extern const std::string_view hot_cell_tasks;
+
 }  // namespace vicinity::cli

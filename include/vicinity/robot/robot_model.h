@@ -56,9 +56,18 @@ struct LinkGeometry {
   TriangleMesh mesh = {};  ///< in the link's frame [m]
 };
 
+/// Mass of a link and how it is spread. Drag does not need it; simulated motion does.
+struct LinkInertia {
+  double mass = 0;               ///< > 0 [kg]
+  Pose X_LC = Pose::Identity();  ///< centre of mass, and the axes that `about_centre` is in
+  Eigen::Matrix3d about_centre = Eigen::Matrix3d::Zero();  ///< symmetric [kg·m²]
+};
+
 struct Link {
   std::string name;
   std::vector<LinkGeometry> geometries = {};  ///< none for a mere frame
+  std::optional<LinkInertia> inertia =
+      std::nullopt;  ///< absent where none, or no usable one, is stated
 };
 
 /// links[0] is the base; joints[i] moves links[i + 1] and hangs on a link before it, so that one

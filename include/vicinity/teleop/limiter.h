@@ -144,6 +144,12 @@ class DragLimiter {
   /// follows grows from there.
   void drop() noexcept { ramp_ = 0; }
 
+  /// As constructed.
+  void restart() noexcept {
+    ramp_ = 1;
+    counts_ = {};
+  }
+
  private:
   LimiterStatus judge(const AxisMatrixView& drag, const AxisVectorView& velocity,
                       const LimiterTick& tick) const noexcept;

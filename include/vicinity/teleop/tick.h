@@ -103,6 +103,12 @@ struct Counts {
   std::uint32_t points_looked = 0;  ///< in this tick: points that were not skipped as far away
 };
 
+/// What one body point felt in a tick: eq. 5, before the limiter.
+struct PointDrag {
+  double mu_e = 0;              ///< effective viscosity [N·s/m³]
+  Vec3 force_W = Vec3::Zero();  ///< on the point, in W, shape (3,) [N]
+};
+
 struct Output {
   Status status = Status::ok;
   AxisVector torque;        ///< on the joints: -s D qd, shape (joint_count,) [N·m or N]
@@ -129,10 +135,19 @@ class Teleoperation {
   int joint_count() const noexcept;
   const BodyPoints& points() const noexcept;
 
+  /// What a point felt in the last tick that was not refused. For the tick's own thread, between
+  /// two ticks. @param point  index into points(), less than points().x.size() Real-time: no
+  /// allocation.
+  PointDrag point_drag(std::uint32_t point) const noexcept;
+
   /// One period. `output` is written whole whatever happens; its torque is zero, and safe, for
   /// every status from `deadline_missed` on. Real-time: time in links, in clusters of points that
   /// may be near something, and in their points; no allocation, lock, system call or exception.
   [[nodiscard]] Status tick(const Input& input, Output& output) noexcept;
+
+  /// Forgets all that was: the next tick is the first one, and the audit and the counts begin anew.
+  /// Not while another thread ticks.
+  void restart() noexcept;
 
   /// Puts another field, or the same with other codings, in place of this one from the next tick
   /// on. The tick takes it whole or not at all, and never waits. Not for the tick's own thread:
