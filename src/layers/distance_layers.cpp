@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "slab_distances.h"
-#include "slab_lists.h"
+#include "sheet_distances.h"
+#include "sheet_lists.h"
 #include "surface_features.h"
 #include "vicinity/geometry/error.h"
 
@@ -61,11 +61,11 @@ struct SurfaceDistances::Parts {
       : m(m_given),
         q(q_given),
         features(mesh, workspace, checked_reach(m, q)),
-        of_slabs(features) {}
+        of_sheets(features) {}
 
   int m, q;
   SurfaceFeatures features;
-  SlabLists of_slabs;
+  SheetLists of_sheets;
 };
 
 SurfaceDistances::SurfaceDistances(const TriangleMesh& mesh, const Workspace& workspace, int m,
@@ -89,11 +89,13 @@ DistanceLayers SurfaceDistances::layers(const VoxelSet& boundary, const VoxelSet
       {std::vector<VoxelSet>(static_cast<std::size_t>(parts.q), VoxelSet(within))},
       BlockGrid<DistanceBlock>(within)};
   if (within.empty()) return layers;
-  tbb::enumerable_thread_specific<SlabDistances> of_thread(
-      [&] { return SlabDistances(parts.features, boundary, inner, parts.m, parts.q, layers); });
-  const std::int32_t first = layers.distances.lo().k;
-  tbb::parallel_for(first, first + layers.distances.size().k,
-                    [&](std::int32_t slab) { of_thread.local().fill(slab, parts.of_slabs[slab]); });
+  tbb::enumerable_thread_specific<SheetDistances> of_thread(
+      [&] { return SheetDistances(parts.features, boundary, inner, parts.m, parts.q, layers); });
+  const std::int32_t first = within.lo.k >> sheet_shift;
+  const std::int32_t last = (within.hi.k - 1) >> sheet_shift;
+  tbb::parallel_for(first, last + 1, [&](std::int32_t sheet) {
+    of_thread.local().fill(sheet, parts.of_sheets[sheet]);
+  });
   return layers;
 }
 

@@ -11,8 +11,7 @@
 
 namespace vicinity {
 
-/// A sliver is a face with a corner so sharp that its widened sides meet far beyond it.
-enum class FeatureKind : std::uint8_t { face, sliver, edge, vertex };
+enum class FeatureKind : std::uint8_t { face, edge, vertex };
 
 /// A convex region around one feature, between planes. Lengths are voxels, and positions are told
 /// from a voxel centre near the feature, so that single precision serves.
@@ -20,7 +19,8 @@ enum class FeatureKind : std::uint8_t { face, sliver, edge, vertex };
 /// Single precision is only trusted as far as its error is known: planes are moved outwards by more
 /// than it can move them inwards.
 struct alignas(64) NearestRegion {
-  static constexpr std::size_t most_planes = 7;
+  static constexpr std::size_t most_planes = 6;
+  static constexpr std::size_t padded_planes = 8;  ///< whole vectors
 
   NearestRegion() = default;
   /// @param at       a point of the feature, in grid coordinates
@@ -28,12 +28,15 @@ struct alignas(64) NearestRegion {
   NearestRegion(FeatureKind of_kind, const Vec3& at, double longest, double reach);
 
   /// Leaves out what lies in front of the plane through `at`.
-  /// @param normal  no longer than `longest`
+  /// @param normal  no longer than 1
   /// @param slack   how far in front of the plane the region may still reach
-  void keep_behind(const Vec3& normal, const Vec3& at, double longest, double slack);
+  void keep_behind(const Vec3& normal, const Vec3& at, double slack);
 
-  /// Bounds the region by the feature's own and a margin along each axis.
-  void set_bounds(const Box& feature, const Vec3& margin);
+  /// Tells how far behind a plane that was kept with this slack a point may be in front of it.
+  void set_doubt(double slack);
+
+  /// The bounds of the region, from the feature's own and a margin along each axis.
+  Eigen::AlignedBox3f bounds(const Box& feature, const Vec3& margin) const;
 
   /// Whether p is in the region; p in grid coordinates, and a voxel centre, so that it is exact.
   bool holds(const Eigen::Vector3f& p) const noexcept {
@@ -51,15 +54,16 @@ struct alignas(64) NearestRegion {
   }
 
   /// Normals and offsets: holds p where normal · (p - anchor) <= offset. Unused ones are 0.
-  float x[most_planes] = {}, y[most_planes] = {}, z[most_planes] = {}, offset[most_planes] = {};
+  float x[padded_planes] = {}, y[padded_planes] = {}, z[padded_planes] = {};
+  float offset[padded_planes] = {};
   Eigen::Vector3f anchor;     ///< the voxel centre, in grid coordinates
   Eigen::Vector3f point;      ///< of the face, the edge (its start) or the vertex; from anchor
   Eigen::Vector3f direction;  ///< of the face: its normal; of the edge: along it; length 1
   float length = 0;           ///< of the edge
-  float error = 0;            ///< how far off a position along `direction` can be
+  float error = 0;            ///< how far off a distance can be by rounded positions
+  float doubt = 0;            ///< of the face: not that far behind its sides, it may be beyond them
   std::uint8_t planes = 0;
   FeatureKind kind = FeatureKind::vertex;
-  Eigen::Vector3f lo, hi;  ///< bounds, in grid coordinates
 };
 
 }  // namespace vicinity

@@ -23,8 +23,9 @@ void find_touched(const NearestRegion* regions, std::span<const std::uint32_t> l
     const NearestRegion& region = regions[listed[n]];
     const float anchor_x = region.anchor[0], anchor_y = region.anchor[1],
                 anchor_z = region.anchor[2];
-    float farthest[planes];
-    for (std::size_t p = 0; p < planes; ++p) {
+    float farthest[NearestRegion::padded_planes];
+#pragma GCC unroll 1
+    for (std::size_t p = 0; p < NearestRegion::padded_planes; ++p) {
       farthest[p] = region.offset[p] +
                     (std::abs(region.x[p]) * boxes.half_x + std::abs(region.y[p]) * boxes.half_y +
                      std::abs(region.z[p]) * boxes.half_z);
@@ -56,13 +57,12 @@ constexpr float offset_z[4] = {-1.5f, -.5f, .5f, 1.5f};
 // is the middle of the cell from the region's anchor. They must become part of measure_cell() to be
 // compiled for its instruction sets.
 
-/// `sides` is 3, or 5 for a sliver.
-template <std::size_t sides>
 [[gnu::always_inline]] inline void lower_to_face(const NearestRegion& region, float x, float y,
-                                                 float z, float* squared) {
+                                                 float z, float* squared, std::int32_t* doubtful) {
   const float n_x = region.direction[0], n_y = region.direction[1], n_z = region.direction[2];
-  float in_front[sides][layer], away[layer];  // of the sides, and of the face's plane
-  for (std::size_t s = 0; s < sides; ++s) {
+  const float region_doubt = region.doubt;
+  float in_front[3][layer], away[layer];  // of the three sides, and of the face's plane
+  for (std::size_t s = 0; s < 3; ++s) {
     const float s_x = region.x[s], s_y = region.y[s];
     const float middle = s_x * x + s_y * y + region.z[s] * z - region.offset[s];
     for (std::size_t l = 0; l < layer; ++l) {
@@ -73,17 +73,18 @@ template <std::size_t sides>
       n_x * (x - region.point[0]) + n_y * (y - region.point[1]) + n_z * (z - region.point[2]);
   for (std::size_t l = 0; l < layer; ++l) away[l] = middle + n_x * offset_x[l] + n_y * offset_y[l];
   for (std::size_t k = 0; k < 4; ++k) {
-    const float up = offset_z[k] * n_z;
+    const float up_0 = offset_z[k] * region.z[0], up_1 = offset_z[k] * region.z[1],
+                up_2 = offset_z[k] * region.z[2], up = offset_z[k] * n_z;
     float* const of_layer = squared + k * layer;
+    std::int32_t* const doubtful_of_layer = doubtful + k * layer;
     for (std::size_t l = 0; l < layer; ++l) {
-      float most = in_front[0][l] + offset_z[k] * region.z[0];
-      for (std::size_t s = 1; s < sides; ++s) {
-        const float of_side = in_front[s][l] + offset_z[k] * region.z[s];
-        most = most > of_side ? most : of_side;
-      }
+      const float a = in_front[0][l] + up_0, b = in_front[1][l] + up_1, c = in_front[2][l] + up_2;
+      const float ab = a > b ? a : b, most = ab > c ? ab : c;
       const float d = away[l] + up;
       const float square = most > 0 ? std::numeric_limits<float>::infinity() : d * d;
       of_layer[l] = square < of_layer[l] ? square : of_layer[l];
+      doubtful_of_layer[l] |=
+          static_cast<std::int32_t>(most <= 0) & static_cast<std::int32_t>(most > -region_doubt);
     }
   }
 }
@@ -164,6 +165,7 @@ VICINITY_WIDEST_VECTORS
 void measure_cell(std::span<const NearestRegion> regions, std::span<const std::uint32_t> listed,
                   float middle_x, float middle_y, float middle_z, CellDistances& distances) {
   alignas(64) float squared[cell_voxels];  // not known to any other pointer
+  alignas(64) std::int32_t doubtful[cell_voxels] = {};
   for (float& square : squared) square = std::numeric_limits<float>::infinity();
   float error = 0;
   for (const std::uint32_t n : listed) {
@@ -173,10 +175,7 @@ void measure_cell(std::span<const NearestRegion> regions, std::span<const std::u
                 z = middle_z - region.anchor[2];
     switch (region.kind) {
       case FeatureKind::face:
-        lower_to_face<3>(region, x, y, z, squared);
-        break;
-      case FeatureKind::sliver:
-        lower_to_face<5>(region, x, y, z, squared);
+        lower_to_face(region, x, y, z, squared, doubtful);
         break;
       case FeatureKind::edge:
         lower_to_edge(region, x, y, z, squared);
@@ -187,33 +186,33 @@ void measure_cell(std::span<const NearestRegion> regions, std::span<const std::u
     }
   }
   std::copy_n(squared, cell_voxels, distances.squared);
+  std::copy_n(doubtful, cell_voxels, distances.doubtful);
   distances.error = error;
 }
 
 VICINITY_WIDEST_VECTORS
 void round_cell(const CellDistances& distances, const Rounding& rounding, RoundedCell& rounded) {
   const Rounding r = rounding;  // no store below can change it
-  // Both ends of a distance are off by as much as positions are. Squares are off by rounding: by
+  // Squares are off by rounding: by
   // 6e-7 of the square of the longest side, which is a distance and a cell and a half, and
   // distances by that over twice the distance. Below 0.005, all that matters is that no step is
-  // reached. A plane's distance may have been taken so far from its triangle, see blunt: ten times
-  // what regions are widened by.
-  const float error = 2 * distances.error;
-  const float beside = 20 * (1e-4f + distances.error);
+  // reached.
+  const float error = distances.error;
   std::int32_t steps[cell_voxels], ranks[cell_voxels], differences[cell_voxels];
   for (std::size_t v = 0; v < cell_voxels; ++v) {
     const float square = distances.squared[v];
     const float root = std::sqrt(square > 0 ? square : 0.0f);
     const float d = root < r.farthest ? root : r.farthest;
     const float of_squares = 3e-7f * (d + 12) + 1.08e-5f / (d > 0.005f ? d : 0.005f);
-    const float off = error + of_squares + beside * beside / (d > beside ? d : beside);
+    const float off = error + of_squares;
     const float low = d > off ? d - off : 0.0f, high = d + off;
     const float low_s = low > r.zero ? low - r.zero : 0.0f;
     const float high_s = high > r.zero ? high - r.zero : 0.0f;
     steps[v] = static_cast<std::int32_t>(high * r.steps_per_voxel);
     ranks[v] = static_cast<std::int32_t>(high_s * r.ranks_per_voxel);
     differences[v] = (steps[v] ^ static_cast<std::int32_t>(low * r.steps_per_voxel)) |
-                     (ranks[v] ^ static_cast<std::int32_t>(low_s * r.ranks_per_voxel));
+                     (ranks[v] ^ static_cast<std::int32_t>(low_s * r.ranks_per_voxel)) |
+                     distances.doubtful[v];
   }
   std::uint64_t unsure = 0;
   for (std::size_t v = 0; v < cell_voxels; ++v) {

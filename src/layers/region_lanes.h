@@ -46,6 +46,7 @@ inline constexpr std::size_t cell_voxels = 64;
 /// How far the voxels of a cell are from the nearest of some features.
 struct CellDistances {
   alignas(64) float squared[cell_voxels];  ///< infinite where no region holds the voxel
+  std::int32_t doubtful[cell_voxels];      ///< not 0: may be too small by any amount
   float error;                             ///< the largest of their regions' errors
 };
 

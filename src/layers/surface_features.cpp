@@ -15,17 +15,19 @@
 namespace vicinity {
 namespace {
 
-/// How much a face's region is widened, in voxels: far above rounding (1e-12), far below a step
-/// (8e-3).
+/// How far beyond its sides a face is asked at all, in voxels: far above rounding (1e-12), far
+/// below a step (8e-3).
 constexpr double widening = 1e-6;
 
 /// Triangles no higher than this, in voxels, are left to their edges, which are then nowhere more
 /// than half of it farther away. A higher triangle's normal is good enough, see Face::slop.
 constexpr double least_height = 2e-6;
 
-/// A face whose height is less than this part of its longest side is a sliver. At this height the
-/// sharpest corner's sides, widened, meet ten times as far off as they were widened.
-constexpr double blunt = 0.2;
+double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const double length = (b - a).norm();
+  const Vec3 along = length > 0 ? Vec3((b - a) / length) : Vec3(Vec3::Zero());
+  return (p - a - std::clamp(along.dot(p - a), 0.0, length) * along).squaredNorm();
+}
 
 }  // namespace
 
@@ -126,78 +128,63 @@ void SurfaceFeatures::join_vertices() {
   }
 }
 
-bool SurfaceFeatures::region_of(std::size_t feature, NearestRegion& region) const {
-  if (feature < faces_.size()) return face_region(faces_[feature], region);
+bool SurfaceFeatures::region_of(std::size_t feature, NearestRegion& region,
+                                Eigen::AlignedBox3f& bounds) const {
+  if (feature < faces_.size()) return face_region(faces_[feature], region, bounds);
   feature -= faces_.size();
-  if (feature < edges_.size()) return edge_region(edges_[feature], region);
-  return vertex_region(used_vertices_[feature - edges_.size()], region);
+  if (feature < edges_.size()) return edge_region(edges_[feature], region, bounds);
+  return vertex_region(used_vertices_[feature - edges_.size()], region, bounds);
 }
 
 double SurfaceFeatures::squared_distance(std::size_t feature, const Vec3& p) const {
-  const auto to_segment = [&](std::uint32_t from, std::uint32_t to) {
-    const Vec3 &a = points_[from], &b = points_[to];
-    const double length = (b - a).norm();
-    const Vec3 along = (b - a) / length;
-    return (p - a - std::clamp(along.dot(p - a), 0.0, length) * along).squaredNorm();
-  };
   if (feature < faces_.size()) {
     const Face& face = faces_[feature];
-    const auto& [u, v, w] = face.vertices;
-    bool in_front = true;
-    for (const auto& [from, to] : {std::pair(u, v), std::pair(v, w), std::pair(u, w)}) {
-      in_front &= out_of_face(face, from, to).dot(p - points_[from]) <= 0;
+    bool in_front = false;
+    double to_sides = std::numeric_limits<double>::infinity();
+    for (const auto& [u, v] : sides_of(face)) {
+      const Vec3 &a = points_[u], &b = points_[v];
+      const Vec3 out = out_of_face(face, u, v);
+      const double beyond = out.dot(p - a);
+      if (beyond > (widening + face.slop) * out.norm()) {
+        return std::numeric_limits<double>::infinity();
+      }
+      in_front |= beyond > 0;
+      to_sides = std::min(to_sides, squared_distance_to_segment(p, a, b));
     }
-    if (!in_front) return std::min({to_segment(u, v), to_segment(v, w), to_segment(u, w)});
-    const double away = face.normal.dot(p - points_[u]);
+    if (in_front) return to_sides;
+    const double away = face.normal.dot(p - points_[face.vertices[0]]);
     return away * away;
   }
   feature -= faces_.size();
-  if (feature < edges_.size()) return to_segment(edges_[feature].a, edges_[feature].b);
+  if (feature < edges_.size()) {
+    return squared_distance_to_segment(p, points_[edges_[feature].a], points_[edges_[feature].b]);
+  }
   return (p - points_[used_vertices_[feature - edges_.size()]]).squaredNorm();
 }
 
-std::pair<SurfaceFeatures::LongestSide, double> SurfaceFeatures::longest_side(
-    const Face& face) const {
-  const auto& [u, v, w] = face.vertices;
-  LongestSide longest{u, v, 0};
-  for (const auto& [from, to] : {std::pair(u, v), std::pair(v, w), std::pair(u, w)}) {
-    const double length = (points_[to] - points_[from]).norm();
-    if (length > longest.length) longest = {from, to, length};
-  }
-  const double twice_area = (points_[v] - points_[u]).cross(points_[w] - points_[u]).norm();
-  return {longest, twice_area / longest.length};
-}
-
-bool SurfaceFeatures::face_region(const Face& face, NearestRegion& region) const {
+bool SurfaceFeatures::face_region(const Face& face, NearestRegion& region,
+                                  Eigen::AlignedBox3f& bounds) const {
   const Vec3& n = face.normal;
   if (n.isZero(0)) return false;
-  Box bounds;
-  for (const std::uint32_t v : face.vertices) bounds.extend(points_[v]);
+  Box triangle;
+  for (const std::uint32_t v : face.vertices) triangle.extend(points_[v]);
   const Vec3& a = points_[face.vertices[0]];
-  region = NearestRegion(FeatureKind::face, a, bounds.sizes().sum(), reach_);
+  region = NearestRegion(FeatureKind::face, a, triangle.sizes().sum(), reach_);
   region.direction = n.cast<float>();
-  for (const auto& [from, to] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 2)}) {
-    const std::uint32_t u = face.vertices[static_cast<std::size_t>(from)];
-    const std::uint32_t v = face.vertices[static_cast<std::size_t>(to)];
-    region.keep_behind(out_of_face(face, u, v), points_[u], (points_[v] - points_[u]).lpNorm<1>(),
-                       face.slop);
+  for (const auto& [u, v] : sides_of(face)) {
+    // Shorter than 1, at least 1 / sqrt(3): good enough, and no root.
+    const double longer = (points_[v] - points_[u]).lpNorm<1>();
+    region.keep_behind(out_of_face(face, u, v) / longer, points_[u], face.slop);
   }
-  // A triangle lies between the planes square to its longest side at both ends.
-  const auto [longest, height] = longest_side(face);
-  if (height < blunt * longest.length) {
-    region.kind = FeatureKind::sliver;
-    const Vec3 &from = points_[longest.from], &to = points_[longest.to];
-    const Vec3 along = (to - from) / longest.length;
-    region.keep_behind(-along, from, 1, 0);
-    region.keep_behind(along, to, 1, 0);
-  }
-  region.keep_behind(n, a, 1, reach_);
-  region.keep_behind(-n, a, 1, reach_);
-  region.set_bounds(bounds, reach_ * n.cwiseAbs() + Vec3::Constant(face.slop));
+  region.set_doubt(face.slop);
+  region.keep_behind(n, a, reach_);
+  region.keep_behind(-n, a, reach_);
+  bounds = region.bounds(triangle, reach_ * n.cwiseAbs() + Vec3::Constant(face.slop));
   return true;
 }
 
-bool SurfaceFeatures::edge_region(const Edge& edge, NearestRegion& region) const {
+bool SurfaceFeatures::edge_region(const Edge& edge, NearestRegion& region,
+                                  Eigen::AlignedBox3f& bounds) const {
   const Vec3 &a = points_[edge.a], &b = points_[edge.b];
   const double length = (b - a).norm();
   if (length == 0) return false;
@@ -218,21 +205,23 @@ bool SurfaceFeatures::edge_region(const Edge& edge, NearestRegion& region) const
   region = NearestRegion(FeatureKind::edge, a, length, reach_);
   region.direction = along.cast<float>();
   region.length = static_cast<float>(length);
-  region.keep_behind(-along, a, 1, 0);
-  region.keep_behind(along, b, 1, 0);
-  for (std::size_t f = 0; f < faces; ++f) region.keep_behind(into[f], a, 1, slop);
+  region.keep_behind(-along, a, 0);
+  region.keep_behind(along, b, 0);
+  for (std::size_t f = 0; f < faces; ++f) region.keep_behind(into[f], a, slop);
   if (bend > 1e-6 + 1e3 * slop) {  // the middle of the wedge is known
     const Vec3 middle = -(into[0] + into[1]) / bend;
-    region.keep_behind(-middle, a, 1, 2 * slop / bend);
-    region.keep_behind(middle, a, 1, reach_);
+    region.keep_behind(-middle, a, 2 * slop / bend);
+    region.keep_behind(middle, a, reach_);
   }
-  Box bounds(a);
-  bounds.extend(b);
-  region.set_bounds(bounds, reach_ * (Vec3::Ones() - along.cwiseAbs2()).cwiseMax(0).cwiseSqrt());
+  Box segment(a);
+  segment.extend(b);
+  bounds =
+      region.bounds(segment, reach_ * (Vec3::Ones() - along.cwiseAbs2()).cwiseMax(0).cwiseSqrt());
   return true;
 }
 
-bool SurfaceFeatures::vertex_region(std::uint32_t vertex, NearestRegion& region) const {
+bool SurfaceFeatures::vertex_region(std::uint32_t vertex, NearestRegion& region,
+                                    Eigen::AlignedBox3f& bounds) const {
   const Vec3& v = points_[vertex];
   region = NearestRegion(FeatureKind::vertex, v, 0, reach_);
   // All its edges' planes are too many. Four that look far apart, and their mean, come near.
@@ -251,17 +240,17 @@ bool SurfaceFeatures::vertex_region(std::uint32_t vertex, NearestRegion& region)
     const auto least = std::min_element(likeness.begin(), likeness.begin() + count);
     if (*least > 1 - 1e-9) break;
     const Vec3 d = along[static_cast<std::size_t>(least - likeness.begin())];
-    region.keep_behind(d, v, 1, 0);
+    region.keep_behind(d, v, 0);
     mean += d;
     for (std::size_t e = 0; e < count; ++e) likeness[e] = std::max(likeness[e], d.dot(along[e]));
   }
   const double length = mean.norm();
   if (length > 1e-3) {
     mean /= length;
-    region.keep_behind(mean, v, 1, 0);
-    region.keep_behind(-mean, v, 1, reach_);
+    region.keep_behind(mean, v, 0);
+    region.keep_behind(-mean, v, reach_);
   }
-  region.set_bounds(Box(v), Vec3::Constant(reach_));
+  bounds = region.bounds(Box(v), Vec3::Constant(reach_));
   return true;
 }
 

@@ -18,10 +18,9 @@
 /// matters.
 ///
 /// A region may only ever be too large, never too small: then no centre falls between two regions.
-/// A segment, a point or a triangle is a part of the surface, so that its distance is right
-/// wherever it is taken. A plane's, in single precision, is taken a little outside of its triangle
-/// as well, and counts as so much less sure; beyond sharp corners, where sides that are widened
-/// meet far off, two more planes cut the region.
+/// A segment or a point is a part of the surface, so that its distance is right wherever it is
+/// taken. A plane's is too small outside of its triangle, and far outside of it even a little
+/// beyond its sides, at the tip of a needle; there the distances to the sides are taken.
 ///
 /// Grid coordinates here have voxel centres at integers, and the voxel's length is 1.
 #pragma once
@@ -30,7 +29,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 
 #include "nearest_region.h"
 #include "vicinity/mesh/triangle_mesh.h"
@@ -50,10 +48,11 @@ class SurfaceFeatures {
   /// The surface's own bounds, without what is in reach of it.
   const Box& bounds() const noexcept { return bounds_; }
 
-  /// Builds the region of a feature. False where no centre can be nearest to it.
-  bool region_of(std::size_t feature, NearestRegion& region) const;
+  /// Builds the region of a feature, with bounds in grid coordinates. False where no centre can be
+  /// nearest to it.
+  bool region_of(std::size_t feature, NearestRegion& region, Eigen::AlignedBox3f& bounds) const;
 
-  /// Squared distance from p to a feature, of a face to the triangle itself.
+  /// Squared distance from p to a feature; infinite for a face whose region p is not in.
   double squared_distance(std::size_t feature, const Vec3& p) const;
 
  private:
@@ -70,20 +69,20 @@ class SurfaceFeatures {
     std::uint32_t first_face, face_count;
   };
 
-  struct LongestSide {
-    std::uint32_t from, to;
-    double length;
-  };
-
-  /// And the height of the triangle over it.
-  std::pair<LongestSide, double> longest_side(const Face& face) const;
   Face make_face(std::array<std::uint32_t, 3> triangle) const;
   void join_edges();
   void join_vertices();
-  bool face_region(const Face& face, NearestRegion& region) const;
-  bool edge_region(const Edge& edge, NearestRegion& region) const;
-  bool vertex_region(std::uint32_t vertex, NearestRegion& region) const;
+  bool face_region(const Face& face, NearestRegion& region, Eigen::AlignedBox3f& bounds) const;
+  bool edge_region(const Edge& edge, NearestRegion& region, Eigen::AlignedBox3f& bounds) const;
+  bool vertex_region(std::uint32_t vertex, NearestRegion& region,
+                     Eigen::AlignedBox3f& bounds) const;
   bool comes_before(std::uint32_t a, std::uint32_t b) const noexcept;
+
+  /// The sides, each from one vertex to a later one.
+  static std::array<std::array<std::uint32_t, 2>, 3> sides_of(const Face& face) noexcept {
+    const auto& [u, v, w] = face.vertices;
+    return {{{u, v}, {v, w}, {u, w}}};
+  }
 
   /// Square to the face's side from `a` to `b`, in its plane and out of it; as long as the side.
   Vec3 out_of_face(const Face& face, std::uint32_t a, std::uint32_t b) const {

@@ -52,8 +52,8 @@ struct DistanceLayers {
 DistanceLayers distance_layers(const TriangleMesh& mesh, const VoxelSet& boundary,
                                const VoxelSet& inner, const Workspace& workspace, int m, int q);
 
-/// The same for a part of the voxels at a time: what the surface's faces, edges and vertices have
-/// to do with each slab of eight layers is found once.
+/// The same for a part of the voxels at a time: which faces, edges and vertices have to do with
+/// which sheet of 16 layers of voxels is found once.
 class SurfaceDistances {
  public:
   /// @param mesh  the object, placed in W [m]; not needed afterwards
@@ -67,8 +67,8 @@ class SurfaceDistances {
   /// The box of all layers of the object whose boundary lies in `boundary`.
   VoxelBox box(const VoxelBox& boundary) const;
 
-  /// The layers' voxels within a box; only there need boundary and inner be known. Slabs are worked
-  /// on side by side: a box of few slabs keeps few threads busy.
+  /// The layers' voxels within a box; only there need boundary and inner be known. Sheets, from
+  /// multiples of 16 on, are worked on side by side: a box of few keeps few threads busy.
   DistanceLayers layers(const VoxelSet& boundary, const VoxelSet& inner,
                         const VoxelBox& within) const;
 

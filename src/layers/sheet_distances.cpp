@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "slab_distances.h"
+#include "sheet_distances.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace vicinity {
 namespace {
@@ -61,8 +62,8 @@ void copy_kept(const std::uint16_t* steps, std::uint64_t kept, std::uint16_t* to
 
 }  // namespace
 
-SlabDistances::SlabDistances(const SurfaceFeatures& features, const VoxelSet& boundary,
-                             const VoxelSet& inner, int m, int q, DistanceLayers& layers)
+SheetDistances::SheetDistances(const SurfaceFeatures& features, const VoxelSet& boundary,
+                               const VoxelSet& inner, int m, int q, DistanceLayers& layers)
     : features_(features),
       boundary_(boundary),
       inner_(inner),
@@ -83,8 +84,8 @@ SlabDistances::SlabDistances(const SurfaceFeatures& features, const VoxelSet& bo
   of_tile_.resize(static_cast<std::size_t>(size.i) * static_cast<std::size_t>(tiles_j_));
 }
 
-void SlabDistances::fill(std::int32_t slab, std::span<const std::uint32_t> listed) {
-  slab_ = slab;
+void SheetDistances::fill(std::int32_t sheet, std::span<const std::uint32_t> listed) {
+  sheet_ = sheet;
   ids_ = listed;
   sort_into_tiles(listed);
   const BlockIndex lo = layers_.distances.lo(), size = layers_.distances.size();
@@ -95,50 +96,53 @@ void SlabDistances::fill(std::int32_t slab, std::span<const std::uint32_t> liste
   }
 }
 
-void SlabDistances::sort_into_tiles(std::span<const std::uint32_t> listed) {
+void SheetDistances::sort_into_tiles(std::span<const std::uint32_t> listed) {
   for (auto& tile : of_tile_) tile.clear();
   regions_.resize(listed.size());
   const BlockIndex lo = layers_.distances.lo(), size = layers_.distances.size();
-  const auto tile_of = [](float p, std::int32_t least, std::int32_t most) {
-    return std::clamp(static_cast<std::int32_t>(std::floor(p)), least, most) >> 6;
+  // Tiles of the box that hold the coordinates low to high: none where the second is lower.
+  const auto tiles_of = [](float low, float high, std::int32_t first, std::int32_t end) {
+    const float least = std::max(std::ceil(low), static_cast<float>(first));
+    const float most = std::min(std::floor(high), static_cast<float>(end - 1));
+    if (least > most) return std::pair(1, 0);
+    return std::pair(static_cast<std::int32_t>(least) >> 6, static_cast<std::int32_t>(most) >> 6);
   };
+  const Eigen::Vector3f half(middle_of(0, 64), middle_of(0, 64), middle_of(0, sheet_size));
   for (std::uint32_t n = 0; n < listed.size(); ++n) {
     NearestRegion& region = regions_[n];
-    if (!features_.region_of(listed[n], region)) continue;
-    if (region.hi.x() < static_cast<float>(box_.lo.i) ||
-        region.lo.x() > static_cast<float>(box_.hi.i - 1) ||
-        region.hi.y() < static_cast<float>(box_.lo.j) ||
-        region.lo.y() > static_cast<float>(box_.hi.j - 1)) {
-      continue;
-    }
-    const std::int32_t last_i = tile_of(region.hi.x(), box_.lo.i, box_.hi.i - 1);
-    const std::int32_t last_j = tile_of(region.hi.y(), box_.lo.j, box_.hi.j - 1);
-    for (std::int32_t j = tile_of(region.lo.y(), box_.lo.j, box_.hi.j - 1); j <= last_j; ++j) {
-      for (std::int32_t i = tile_of(region.lo.x(), box_.lo.i, box_.hi.i - 1); i <= last_i; ++i) {
-        if (!region.touches({middle_of(i * 64, 64), middle_of(j * 64, 64), middle_of(slab_ * 8, 8)},
-                            {middle_of(0, 64), middle_of(0, 64), middle_of(0, 8)})) {
-          continue;
-        }
+    Eigen::AlignedBox3f bounds;
+    if (!features_.region_of(listed[n], region, bounds)) continue;
+    const auto [first_i, last_i] =
+        tiles_of(bounds.min().x(), bounds.max().x(), box_.lo.i, box_.hi.i);
+    const auto [first_j, last_j] =
+        tiles_of(bounds.min().y(), bounds.max().y(), box_.lo.j, box_.hi.j);
+    for (std::int32_t j = first_j; j <= last_j; ++j) {
+      for (std::int32_t i = first_i; i <= last_i; ++i) {
+        const Eigen::Vector3f middle(middle_of(i * 64, 64), middle_of(j * 64, 64),
+                                     middle_of(sheet_ * sheet_size, sheet_size));
+        if (!region.touches(middle, half)) continue;
         of_tile_[static_cast<std::size_t>((j - first_tile_j_) * size.i + (i - lo.i))].push_back(n);
       }
     }
   }
 }
 
-void SlabDistances::fill_tile(std::int32_t tile_i, std::int32_t tile_j,
-                              std::span<const std::uint32_t> listed) {
-  of_block_.fill(regions_, listed, eight_boxes({64, 8, 8}, [&](std::int32_t n) {
-                   return VoxelIndex{tile_i * 64, tile_j * 64 + n * 8, slab_ * 8};
-                 }));
-  for (std::int32_t n = 0; n < 8; ++n) {
-    block_ = {tile_i, tile_j * 8 + n, slab_};
-    const auto touching = of_block_[static_cast<std::size_t>(n)];
-    if (!touching.empty() && find_wanted()) fill_block(touching);
+void SheetDistances::fill_tile(std::int32_t tile_i, std::int32_t tile_j,
+                               std::span<const std::uint32_t> listed) {
+  for (std::int32_t k = sheet_ * sheet_size; k < (sheet_ + 1) * sheet_size; k += 8) {
+    of_block_.fill(regions_, listed, eight_boxes({64, 8, 8}, [&](std::int32_t n) {
+                     return VoxelIndex{tile_i * 64, tile_j * 64 + n * 8, k};
+                   }));
+    for (std::int32_t n = 0; n < 8; ++n) {
+      block_ = {tile_i, tile_j * 8 + n, k >> 3};
+      const auto touching = of_block_[static_cast<std::size_t>(n)];
+      if (!touching.empty() && find_wanted()) fill_block(touching);
+    }
   }
 }
 
 /// Finds which voxels of the block are asked for. Returns false where none is.
-bool SlabDistances::find_wanted() {
+bool SheetDistances::find_wanted() {
   std::uint64_t in_box = ~std::uint64_t{0};
   const std::int32_t i = block_.i * 64;
   if (box_.lo.i > i) in_box &= ~std::uint64_t{0} << (box_.lo.i - i);
@@ -158,7 +162,7 @@ bool SlabDistances::find_wanted() {
   return (any_wanted_[0] | any_wanted_[1] | any_wanted_[2] | any_wanted_[3]) != 0;
 }
 
-void SlabDistances::fill_block(std::span<const std::uint32_t> listed) {
+void SheetDistances::fill_block(std::span<const std::uint32_t> listed) {
   ranks_.fill(static_cast<std::uint8_t>(q_));
   steps_.fill(0);
   of_brick_.fill(regions_, listed, eight_boxes({8, 8, 8}, [&](std::int32_t n) {
@@ -172,7 +176,7 @@ void SlabDistances::fill_block(std::span<const std::uint32_t> listed) {
   store();
 }
 
-void SlabDistances::fill_brick(std::int32_t first_i, std::span<const std::uint32_t> listed) {
+void SheetDistances::fill_brick(std::int32_t first_i, std::span<const std::uint32_t> listed) {
   const auto first_of = [&](std::int32_t n) {  // within the block
     return VoxelIndex{first_i + (n & 1) * 4, (n >> 1 & 1) * 4, (n >> 2) * 4};
   };
@@ -189,7 +193,7 @@ void SlabDistances::fill_brick(std::int32_t first_i, std::span<const std::uint32
   }
 }
 
-void SlabDistances::fill_cell(const VoxelIndex& first, std::span<const std::uint32_t> listed) {
+void SheetDistances::fill_cell(const VoxelIndex& first, std::span<const std::uint32_t> listed) {
   const VoxelIndex lo{block_.i * 64 + first.i, block_.j * 8 + first.j, block_.k * 8 + first.k};
   CellDistances distances;
   measure_cell(regions_, listed, middle_of(lo.i, 4), middle_of(lo.j, 4), middle_of(lo.k, 4),
@@ -213,8 +217,8 @@ void SlabDistances::fill_cell(const VoxelIndex& first, std::span<const std::uint
   }
 }
 
-void SlabDistances::measure_again(const VoxelIndex& voxel, std::span<const std::uint32_t> listed,
-                                  std::uint16_t& steps, std::uint8_t& rank) const {
+void SheetDistances::measure_again(const VoxelIndex& voxel, std::span<const std::uint32_t> listed,
+                                   std::uint16_t& steps, std::uint8_t& rank) const {
   const Vec3 p(voxel.i, voxel.j, voxel.k);
   const Eigen::Vector3f near_p = p.cast<float>();
   double squared = std::numeric_limits<double>::infinity();
@@ -232,7 +236,7 @@ void SlabDistances::measure_again(const VoxelIndex& voxel, std::span<const std::
 }
 
 /// Puts the block's ranks and distances into the layers.
-void SlabDistances::store() {
+void SheetDistances::store() {
   const BitBlock* const boundary = boundary_.blocks().find(block_);
   const auto bits = static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(q_)));
   std::array<std::uint64_t, 6> bit_of_rank{};

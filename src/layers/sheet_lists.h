@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-/// Which features of a surface have to do with which slab of voxels.
+/// Which features of a surface have to do with which sheet of voxels.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -20,10 +20,10 @@
 
 namespace vicinity {
 
-/// For each slab of voxels, the features whose regions touch it.
-class SlabLists {
+/// For each sheet of voxels, the features whose regions touch it.
+class SheetLists {
  public:
-  explicit SlabLists(const SurfaceFeatures& features) {
+  explicit SheetLists(const SurfaceFeatures& features) {
     HugeVector<Range> ranges(features.size());
     tbb::parallel_for(std::size_t{0}, ranges.size(),
                       [&](std::size_t f) { ranges[f] = range_of(features, f); });
@@ -36,27 +36,27 @@ class SlabLists {
     starts_.assign(static_cast<std::size_t>(std::max(all.last - all.first, -1) + 2), 0);
     const auto for_each = [&](const auto& visit) {
       for (std::size_t f = 0; f < ranges.size(); ++f) {
-        for (std::int32_t slab = ranges[f].first; slab <= ranges[f].last; ++slab) {
-          visit(static_cast<std::size_t>(slab - first_), static_cast<std::uint32_t>(f));
+        for (std::int32_t sheet = ranges[f].first; sheet <= ranges[f].last; ++sheet) {
+          visit(static_cast<std::size_t>(sheet - first_), static_cast<std::uint32_t>(f));
         }
       }
     };
-    for_each([&](std::size_t slab, std::uint32_t) { ++starts_[slab + 1]; });
+    for_each([&](std::size_t sheet, std::uint32_t) { ++starts_[sheet + 1]; });
     for (std::size_t n = 1; n < starts_.size(); ++n) starts_[n] += starts_[n - 1];
     features_.resize(starts_.back());
     std::vector<std::size_t> fill(starts_);
-    for_each([&](std::size_t slab, std::uint32_t f) { features_[fill[slab]++] = f; });
+    for_each([&](std::size_t sheet, std::uint32_t f) { features_[fill[sheet]++] = f; });
   }
 
-  std::span<const std::uint32_t> operator[](std::int32_t slab) const {
-    const std::int64_t n = std::int64_t{slab} - first_;
+  std::span<const std::uint32_t> operator[](std::int32_t sheet) const {
+    const std::int64_t n = std::int64_t{sheet} - first_;
     if (n < 0 || n + 1 >= static_cast<std::int64_t>(starts_.size())) return {};
     const std::size_t start = starts_[static_cast<std::size_t>(n)];
     return {features_.data() + start, starts_[static_cast<std::size_t>(n + 1)] - start};
   }
 
  private:
-  /// From the first to the last slab touched; a region is convex, and touches all between.
+  /// From the first to the last sheet touched; a region is convex, and touches all between.
   struct Range {
     std::int32_t first = std::numeric_limits<std::int32_t>::max() / 2;
     std::int32_t last = std::numeric_limits<std::int32_t>::min() / 2;
@@ -65,21 +65,25 @@ class SlabLists {
   static Range range_of(const SurfaceFeatures& features, std::size_t feature) {
     Range range;
     NearestRegion region;
-    if (!features.region_of(feature, region)) return range;
-    Eigen::Vector3f middle = 0.5f * (region.lo + region.hi), half = 0.5f * (region.hi - region.lo);
-    half.z() = 3.5f;
-    const auto slab_of = [](float z) { return static_cast<std::int32_t>(std::floor(z)) >> 3; };
-    for (std::int32_t slab = slab_of(region.lo.z()); slab <= slab_of(region.hi.z()); ++slab) {
-      middle.z() = static_cast<float>(slab * 8) + 3.5f;
+    Eigen::AlignedBox3f bounds;
+    if (!features.region_of(feature, region, bounds)) return range;
+    Eigen::Vector3f middle = bounds.center(), half = 0.5f * bounds.sizes();
+    half.z() = 0.5f * static_cast<float>(sheet_size - 1);
+    const auto sheet_of = [](float z) {
+      return static_cast<std::int32_t>(std::floor(z)) >> sheet_shift;
+    };
+    const std::int32_t end = sheet_of(bounds.max().z()) + 1;
+    for (std::int32_t sheet = sheet_of(bounds.min().z()); sheet < end; ++sheet) {
+      middle.z() = static_cast<float>(sheet * sheet_size) + half.z();
       if (!region.touches(middle, half)) continue;
-      range.first = std::min(range.first, slab);
-      range.last = slab;
+      range.first = std::min(range.first, sheet);
+      range.last = sheet;
     }
     return range;
   }
 
   std::int32_t first_;
-  std::vector<std::size_t> starts_;  ///< of each slab's part of features_, and the end
+  std::vector<std::size_t> starts_;  ///< of each sheet's part of features_, and the end
   HugeVector<std::uint32_t> features_;
 };
 

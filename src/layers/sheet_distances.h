@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-/// Ranks and distances of one slab of blocks, from the features that can be nearest there.
+/// Ranks and distances of one sheet of voxels, from the features that can be nearest there.
 ///
 /// The features that can be nearest to a voxel of a box are those whose regions touch the box. So
 /// boxes are cut into eight, and only what touches a part is handed on to it:
 ///
-///     slab -> tiles of 64 x 64 x 8 -> blocks of 64 x 8 x 8 -> bricks of 8 x 8 x 8 -> cells of 4 x
-///     4 x 4
+///     sheet of 16 layers -> tiles of 64 x 64 x 16 -> blocks of 64 x 8 x 8
+///                                                   -> bricks of 8 x 8 x 8 -> cells of 4 x 4 x 4
 ///
 /// In a cell, a dozen features are left of a smooth surface, whatever its triangles' number, and
 /// each of them is asked by all 64 voxels at once. That is in single precision with a known error;
@@ -26,16 +26,20 @@
 
 namespace vicinity {
 
-/// Memory to fill one slab after another; each thread has its own.
-class SlabDistances {
+/// A sheet is two slabs of blocks: thick enough that a feature's region is not built for too many
+/// of them, thin enough that there are many to share among threads.
+inline constexpr std::int32_t sheet_shift = 4, sheet_size = 1 << sheet_shift;
+
+/// Memory to fill one sheet after another; each thread has its own.
+class SheetDistances {
  public:
   /// Works within the box of `layers`.
-  SlabDistances(const SurfaceFeatures& features, const VoxelSet& boundary, const VoxelSet& inner,
-                int m, int q, DistanceLayers& layers);
+  SheetDistances(const SurfaceFeatures& features, const VoxelSet& boundary, const VoxelSet& inner,
+                 int m, int q, DistanceLayers& layers);
 
-  /// @param slab    number of the slab: layers k with k >> 3 == slab
+  /// @param sheet   number of the sheet: layers k with k >> sheet_shift == sheet
   /// @param listed  all features whose regions touch it; more do no harm
-  void fill(std::int32_t slab, std::span<const std::uint32_t> listed);
+  void fill(std::int32_t sheet, std::span<const std::uint32_t> listed);
 
  private:
   void sort_into_tiles(std::span<const std::uint32_t> listed);
@@ -55,8 +59,8 @@ class SlabDistances {
   const VoxelBox box_;
   const Rounding rounding_;
 
-  std::int32_t slab_ = 0;
-  std::span<const std::uint32_t> ids_;  ///< the slab's features
+  std::int32_t sheet_ = 0;
+  std::span<const std::uint32_t> ids_;  ///< the sheet's features
   HugeVector<NearestRegion> regions_;   ///< of the same; lists below are positions here
   std::int32_t first_tile_j_ = 0, tiles_j_ = 0;
   std::vector<std::vector<std::uint32_t>> of_tile_;
@@ -64,9 +68,8 @@ class SlabDistances {
 
   // The block at hand.
   BlockIndex block_;
-  std::array<std::uint64_t, 64> wanted_{};  ///< voxels that may take a rank, and the skin
-  std::array<std::uint64_t, 4>
-      any_wanted_{};  ///< of the 4 x 4 rows of cells: (k, j) = 0 0, 0 1, ..
+  std::array<std::uint64_t, 64> wanted_{};     ///< voxels that may take a rank, and the skin
+  std::array<std::uint64_t, 4> any_wanted_{};  ///< of the rows of cells, in the order of k, j
   std::array<std::uint16_t, 4096> steps_{};
   std::array<std::uint8_t, 4096> ranks_{};  ///< less one; q: none
 };
