@@ -115,6 +115,18 @@ TEST(Shells, CoverEveryOuterFaceOfEveryLayerOnceAndNothingElse) {
   }
 }
 
+// A page may ask for any step; the time it takes is that of the array, not of the step.
+TEST(Shells, OfAStepBeyondTheArrayAreOneCell) {
+  const ViscosityField field = random_field(1);
+  const Shells shells = shells_of(field, 1 << 16);
+  const auto faces = covered_faces(shells.by_rank[0]);
+  EXPECT_EQ(faces.size(), 6u);
+  for (const auto& [face, covered] : faces) EXPECT_EQ(covered.first, 1);
+  for (std::size_t rank = 1; rank < shells.by_rank.size(); ++rank) {
+    EXPECT_TRUE(shells.by_rank[rank].empty()) << "rank " << rank;
+  }
+}
+
 TEST(Shells, AFlatFaceIsAFewQuads) {
   Scene scene;
   scene.voxel_size = 0.01;

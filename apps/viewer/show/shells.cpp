@@ -72,11 +72,16 @@ class Cells {
   Cell look(const VoxelIndex& cell) const {
     const VoxelIndex lo{cell.i * step_, cell.j * step_, cell.k * step_};
     if (step_ == 1) return cell_of(field_.records()[field_.code_at(lo)]);
-    // Bricks are aligned to multiples of eight, as cells are to multiples of their step.
+    // Bricks are aligned to multiples of eight, as cells are to multiples of their step, and the
+    // array starts at zero. What a cell has beyond the array is empty, however large it is.
     const std::int32_t piece = std::min(step_, brick);
-    for (std::int32_t k = lo.k; k < lo.k + step_; k += piece) {
-      for (std::int32_t j = lo.j; j < lo.j + step_; j += piece) {
-        for (std::int32_t i = lo.i; i < lo.i + step_; i += piece) {
+    const VoxelIndex dims = field_.workspace().dims;
+    const VoxelIndex from{std::max(lo.i, 0), std::max(lo.j, 0), std::max(lo.k, 0)};
+    const VoxelIndex to{std::min(lo.i + step_, dims.i), std::min(lo.j + step_, dims.j),
+                        std::min(lo.k + step_, dims.k)};
+    for (std::int32_t k = from.k; k < to.k; k += piece) {
+      for (std::int32_t j = from.j; j < to.j; j += piece) {
+        for (std::int32_t i = from.i; i < to.i; i += piece) {
           if (field_.brick_is_empty({i, j, k})) continue;
           const Cell skin = skin_in({i, j, k}, piece);
           if (skin.level == 0) return skin;
