@@ -144,7 +144,7 @@ std::optional<AxisVector> solved(const Workplace& place, const Vec3& p_WT,
 // weight how far it stays from where it cannot move in some direction. Below zero where it cannot
 // go it.
 double ease_of_the_way(const Workplace& place, const Task& task, const AxisVector& q) {
-  constexpr double step_m = 0.002;
+  constexpr double step_m = 0.0005;  // of 0.5 m/s at 1 kHz
   Lead lead(place.robot, AxisKind::cartesian, place.tool_link, place.X_WB);
   AxisVector x = task.intent.path_W.front();
   lead.start(q, x);
@@ -162,7 +162,7 @@ double ease_of_the_way(const Workplace& place, const Task& task, const AxisVecto
       if ((lead.p_WT() - Vec3(x)).norm() > 0.002) return -1;
       if ((lead.q() - last).cwiseAbs().maxCoeff() > 0.1) return -1;
       last = lead.q();
-      if (n % 5 != 0) continue;
+      if (n % 20 != 0) continue;
       distance.look(lead.q().data(), place.X_WB);
       if (const NearPoint* nearest = distance.nearest()) {
         room = std::min(room, nearest->distance_m);
