@@ -21,8 +21,10 @@ endfunction()
 # The rules every target of ours is compiled by.
 function(vicinity_compile_rules TARGET)
   target_compile_features(${TARGET} PUBLIC cxx_std_20)
+  # A unity build joins files, where a local may bear the name of another file's constant.
+  set(shadow $<IF:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>,-Wshadow=local,-Wshadow>)
   # No fused multiply-add: the same scene gives the same bytes on every machine.
-  target_compile_options(${TARGET} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
+  target_compile_options(${TARGET} PRIVATE -Wall -Wextra ${shadow} -Wconversion -Wno-sign-conversion
                                            -ffp-contract=off)
   if(VICINITY_WERROR)
     target_compile_options(${TARGET} PRIVATE -Werror)

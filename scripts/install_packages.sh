@@ -18,13 +18,28 @@ packages=(
   libcairo2-dev fonts-dejavu-core    # pictures
   libembree-dev                      # the report's measured peer: nearest surface by a tree
   libopenvdb-dev libboost-iostreams-dev # export to .vdb
-  libmujoco-dev libqhull-dev         # simulated arms; the first cannot be found without the second
   libgtest-dev libgmock-dev          # tests
   liburdfdom-dev liborocos-kdl-dev   # tests: robots and kinematics by another route
 )
-if [[ ${1:-} == --benchmarks ]]; then
-  packages+=(libbenchmark-dev)
-fi
+# What only some need:
+#   --benchmarks     the benchmarks
+#   --peers          the benchmarks, and what scripts/bench.sh measures us beside (150 MB)
+#   --simulation     what VICINITY_SIMULATION needs
+#   --viewer         the viewer's page, which npm builds; without it vicinity serve has no page
+#   --viewer-tests   a browser (700 MB) for the tests that look at the page, and for serve --shot
+# Node, npm and a browser that came from elsewhere will do.
+for flag in "$@"; do
+  case $flag in
+    --benchmarks) packages+=(libbenchmark-dev) ;;
+    --peers) packages+=(libbenchmark-dev libnanovdb-dev libfcl-dev libcgal-dev liboctomap-dev
+                        libdynamicedt3d-dev python3-scipy) ;;
+    # The first cannot be found without the second.
+    --simulation) packages+=(libmujoco-dev libqhull-dev) ;;
+    --viewer) command -v npm >/dev/null || packages+=(nodejs npm) ;;
+    --viewer-tests) command -v chromium >/dev/null || packages+=(chromium) ;;
+    *) echo "install_packages.sh: there is no $flag; --benchmarks, --peers, --simulation, --viewer, --viewer-tests" >&2; exit 2 ;;
+  esac
+done
 
 missing=()
 for package in "${packages[@]}"; do

@@ -26,6 +26,9 @@
 #include "commands/slice.h"
 #include "commands/trace.h"
 #include "interruption.h"
+#ifdef VICINITY_VIEWER
+#include "serve.h"
+#endif
 #include "vicinity/geometry/error.h"
 #include "vicinity/geometry/nearest_word.h"
 
@@ -48,6 +51,7 @@ constexpr const char* welcome =
   vicinity trace F ...          the drag on a point along a straight track
   vicinity replay F ...         a joint log of an arm: what its operator would feel
   vicinity slice F ...          a picture of the layers
+  vicinity serve F              see the layers and drive an arm through them, in a browser
   vicinity export F -o ...      for numpy, ParaView, Blender
   vicinity simulate ...         operators in simulation: does any of it help?
   vicinity reproduce -o DIR     the paper's figures and tables, ours beside theirs
@@ -242,6 +246,38 @@ void add_replay(CLI::App& parent, Run& run) {
   command.runs(replay, run);
 }
 
+#ifdef VICINITY_VIEWER
+void add_serve(CLI::App& parent, Run& run) {
+  Command<viewer::ServeOptions> command(
+      parent, "serve", "Show a field and an arm in a browser, to be looked at and driven",
+      "vicinity serve cell.vicinity --robot arm.urdf --base 0,0,0.8,0,0,0\n"
+      "  vicinity serve scene.yaml");
+  auto& [app, options] = command;
+  app.add_option("INPUT", options->input, "made by vicinity build, or a scene (.yaml, .yml)")
+      ->required();
+  add_arm(app, options->arm);
+  app.add_option("--points-per-m2", options->arm.points_per_m2,
+                 "density of body points; default: 2000");
+  add_feel(app, options->arm);
+  app.add_option("--start", options->start, "where its joints are at first: q,q,... [rad or m]");
+  app.add_option("--port", options->port, "0 takes one that is free")->capture_default_str();
+  app.add_option("--bind", options->bind,
+                 "address to listen at; any but the loopback needs --token")
+      ->capture_default_str();
+  app.add_option("--token", options->token, "what a page must know to be let in");
+  app.add_option("--folder", options->folder, "for uploads, saved scenes and fields")
+      ->capture_default_str();
+  app.add_option("--recording", options->recordings,
+                 "outputs of vicinity replay, and joint logs, that the page can play");
+  app.add_option("--shot", options->shot, "draw the page into this .png, and end");
+  app.add_option("--shot-view", options->shot_view,
+                 "what of it: key=value&key=value, as in the page's address");
+  app.add_option("--seconds", options->seconds, "end after so long; default: Ctrl-C")
+      ->check(CLI::PositiveNumber);
+  command.runs(viewer::serve, run);
+}
+#endif
+
 void add_slice(CLI::App& parent, Run& run) {
   Command<SliceOptions> command(parent, "slice", "Draw the layers in a plane, as a picture",
                                 "vicinity slice cell.vicinity --z 0.04 -o s.png");
@@ -330,6 +366,15 @@ void add_reproduce(CLI::App& parent, Run& run) {
   command.runs(reproduce, run);
 }
 
+#ifndef VICINITY_VIEWER
+void refuse_serve(int argc, char** argv) {
+  if (argc < 2 || std::string_view(argv[1]) != "serve") return;
+  throw Error({.where = "serve",
+               .what = "this vicinity was built without the viewer",
+               .hint = "building it with -DVICINITY_VIEWER=ON"});
+}
+#endif
+
 // CLI11 only says that a word was not expected; people want to know which one was meant.
 void refuse_unknown_words(const CLI::App& app, int argc, char** argv) {
   const CLI::App* command = &app;
@@ -385,6 +430,11 @@ int run(int argc, char** argv) {
   add_simulate(app, chosen);
   add_reproduce(app, chosen);
   add_bench(app, chosen);
+#ifdef VICINITY_VIEWER
+  add_serve(app, chosen);
+#else
+  refuse_serve(argc, argv);
+#endif
   app.footer("Example:\n  vicinity demo");
 
   refuse_unknown_words(app, argc, argv);

@@ -4,6 +4,8 @@
 #include "vicinity/mesh/stl_file.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,10 +17,12 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "mesh_error.h"
@@ -43,7 +47,7 @@ std::size_t binary_size(std::uint32_t triangles) { return header_size + record_s
 
 constexpr std::string_view blanks = " \t\r\n\v\f";
 
-bool is_blank(char c) { return blanks.find(c) != std::string_view::npos; }
+bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }  // those of `blanks`
 
 /// Compares with a lower-case word; ASCII letters only, whatever the locale.
 bool equals_ignoring_case(std::string_view text, std::string_view lower_case) {
@@ -92,34 +96,36 @@ TriangleMesh read_binary(std::ifstream& file, const std::filesystem::path& path,
   return std::move(weld).take();
 }
 
-/// A walk through the words of an ASCII STL file. Lines matter only after "solid" and "endsolid",
-/// where the rest of the line is a name.
+/// A walk through the words of an ASCII STL file, or a part of one. Lines matter only after "solid"
+/// and "endsolid", where the rest of the line is a name.
 class AsciiStl {
  public:
   AsciiStl(std::string_view text, const std::filesystem::path& path) : text_(text), path_(path) {}
 
-  TriangleMesh read() {
-    // A facet of one-digit numbers with the fewest blanks takes about 90 bytes, a common one 250:
-    // enough to start from, and never more than the file itself justifies.
-    VertexWeld weld(text_.size() / 250);
-    std::string_view word = next();
-    while (!word.empty()) {
-      expect(word, "solid");
-      skip_line();
-      word = next();
-      while (equals_ignoring_case(word, "facet")) {
-        const std::array<Vec3, 3> corners = facet();
-        weld.add({&corners, 1});
-        word = next();
+  /// Calls add(corners) for each triangle of a whole file.
+  void read(auto&& add) {
+    if (read_part(false, add)) refuse({}, facet_or_end);
+  }
+
+  /// The same for a part that begins and ends where a facet may begin.
+  /// @param within  whether it begins within a solid
+  /// @return        whether it ends within one
+  bool read_part(bool within, auto&& add) {
+    for (std::string_view word = next(); !word.empty(); word = next()) {
+      if (within && equals_ignoring_case(word, "facet")) {
+        add(facet());
+      } else {
+        expect(word, within ? "endsolid" : "solid", within ? facet_or_end : "");
+        skip_line();
+        within = !within;
       }
-      expect(word, "endsolid", "\"facet\" or \"endsolid\"");
-      skip_line();
-      word = next();
     }
-    return std::move(weld).take();
+    return within;
   }
 
  private:
+  static constexpr std::string_view facet_or_end = "\"facet\" or \"endsolid\"";
+
   std::array<Vec3, 3> facet() {
     expect(next(), "normal");
     for (int i = 0; i < 3; ++i) {
@@ -200,6 +206,108 @@ class AsciiStl {
   std::size_t begin_ = 0;  // where the last one began
 };
 
+// A facet of one-digit numbers with the fewest blanks takes about 90 bytes, a common one 250:
+// enough to start from, and never more than the file itself justifies.
+constexpr std::size_t bytes_per_facet = 250;
+
+// Parts of this size are parsed by all threads: large beside a facet, small enough to stay in a
+// cache. A file of a few parts is read by one thread.
+constexpr std::size_t part_size = 1 << 18;
+constexpr std::size_t few_parts = 4;
+
+// A file in which no line of so many parts begins with "facet" is not worth another look.
+constexpr std::size_t most_parts_in_one = 16;
+
+/// Where the last line that begins with "facet" begins, or 0. It is no part of a name, since names
+/// end with their line.
+std::size_t last_facet(std::string_view text) {
+  for (std::size_t end = text.npos; end != 0;) {
+    const std::size_t newline = text.rfind('\n', end - 1);
+    if (newline == text.npos) break;
+    const std::size_t word = text.find_first_not_of(" \t\r\v\f", newline + 1);
+    if (word != text.npos && equals_ignoring_case(text.substr(word, 5), "facet")) return newline;
+    end = newline;
+  }
+  return 0;
+}
+
+/// Reads a sound file by all threads: parts are read one after another, parsed side by side and
+/// welded in the order of the file. Throws where anything is wrong, without the right place.
+TriangleMesh read_ascii_parts(std::ifstream& file, const std::filesystem::path& path,
+                              std::size_t size) {
+  struct Part {
+    std::string text;
+    bool first, last;
+    std::vector<std::array<Vec3, 3>> corners;
+  };
+  using Pointer = std::shared_ptr<Part>;
+  VertexWeld weld(size / bytes_per_facet);
+  std::string rest;  // behind the last part
+  bool first = true;
+  const auto read = [&](tbb::flow_control& flow) -> Pointer {
+    if (!first && rest.empty()) {
+      flow.stop();
+      return nullptr;
+    }
+    auto part =
+        std::make_shared<Part>(Part{std::move(rest), std::exchange(first, false), false, {}});
+    std::size_t cut = 0;
+    while (cut == 0 && !part->last) {
+      if (part->text.size() > most_parts_in_one * part_size) {
+        throw Error({.where = path.string(), .what = "no line begins with a facet"});
+      }
+      const std::size_t had = part->text.size();
+      part->text.resize(had + part_size);
+      file.read(&part->text[had], part_size);
+      part->text.resize(had + static_cast<std::size_t>(file.gcount()));
+      part->last = !file;
+      if (!part->last) cut = last_facet(part->text);
+    }
+    rest = part->last ? std::string() : part->text.substr(cut);
+    if (!part->last) part->text.resize(cut);
+    return part;
+  };
+  const auto parse = [&](Pointer part) {
+    part->corners.reserve(part->text.size() / bytes_per_facet);
+    const bool within =
+        AsciiStl(part->text, path).read_part(!part->first, [&](const auto& corners) {
+          part->corners.push_back(corners);
+        });
+    if (within == part->last) throw Error({.where = path.string(), .what = "a solid does not end"});
+    part->text = {};
+    return part;
+  };
+  const std::size_t parts_at_once =
+      4 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  tbb::parallel_pipeline(
+      parts_at_once,
+      tbb::make_filter<void, Pointer>(tbb::filter_mode::serial_in_order, read) &
+          tbb::make_filter<Pointer, Pointer>(tbb::filter_mode::parallel, parse) &
+          tbb::make_filter<Pointer, void>(tbb::filter_mode::serial_in_order,
+                                          [&](const Pointer& part) { weld.add(part->corners); }));
+  return std::move(weld).take();
+}
+
+TriangleMesh read_ascii(std::ifstream& file, const std::filesystem::path& path, std::size_t size) {
+  file.clear();
+  file.seekg(0);
+  if (size > few_parts * part_size) {
+    try {
+      return read_ascii_parts(file, path, size);
+    } catch (const Error&) {
+      // Once more from the beginning, to say what is wrong and in which line.
+      file.clear();
+      file.seekg(0);
+    }
+  }
+  std::string text(size, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(size));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  VertexWeld weld(text.size() / bytes_per_facet);
+  AsciiStl(text, path).read([&](const std::array<Vec3, 3>& corners) { weld.add({&corners, 1}); });
+  return std::move(weld).take();
+}
+
 [[noreturn]] void throw_wrong_size(const std::filesystem::path& path, std::uint32_t triangles,
                                    std::size_t size) {
   throw Error({.where = path.string(),
@@ -228,11 +336,7 @@ TriangleMesh read_stl(const std::filesystem::path& path) {
   if (seen.size() >= header_size && size == binary_size(triangles)) {
     mesh = read_binary(file, path, triangles);
   } else if (is_text(seen) && starts_with_solid(seen)) {
-    std::string text(size, '\0');
-    file.seekg(0);
-    file.read(text.data(), static_cast<std::streamsize>(size));
-    text.resize(static_cast<std::size_t>(file.gcount()));
-    mesh = AsciiStl(text, path).read();
+    mesh = read_ascii(file, path, size);
   } else if (seen.size() >= header_size && !is_text(seen)) {
     throw_wrong_size(path, triangles, size);
   } else {

@@ -26,6 +26,8 @@ Eigen::Matrix3d cross_matrix(const Vec3& r) noexcept {
 // Single precision rounds each coordinate by less than this much of the sum of its terms.
 constexpr double single_rounding = 5.0 / (1 << 24);
 
+constexpr auto cluster_points = static_cast<std::uint32_t>(BodyPoints::cluster_size);
+
 // After so many ticks a cluster's sums are made anew, so that the rounding of their changes does
 // not add up.
 constexpr std::uint32_t refresh_period = 256;
@@ -395,6 +397,30 @@ void Teleoperation::Body::offer_largest(const BodyPoints::Cluster& cluster, cons
   largest_ = {.point = cluster.begin + static_cast<std::uint32_t>(most.point),
               .link = link,
               .power = most.power};
+}
+
+PointDrag Teleoperation::Body::point_drag(std::uint32_t point) const noexcept {
+  PointDrag felt;
+  const auto range =
+      std::ranges::find_if(points_.links, [point](const BodyPoints::LinkRange& link) {
+        return point >= link.begin && point < link.end;
+      });
+  if (range == points_.links.end() || !(drag_[point] > 0)) return felt;
+  const std::uint32_t cluster = range->first_cluster + (point - range->begin) / cluster_points;
+  // What is skipped as far away feels nothing; its drag may be that of before a new start.
+  if (clusters_[cluster].past != ClusterState::Past::known) return felt;
+  const double area = static_cast<double>(points_.area[point]);
+  const LinkMotion& motion = motion_[static_cast<std::size_t>(range->link)];
+  felt.mu_e = static_cast<double>(drag_[point]) / area;
+  const Vec3 r_W = motion.X_WL.linear() * position(point);
+  const Vec3 v_WR = motion.v_WLo + motion.w_WL.cross(r_W);
+  const Vec3 towards_W = closing_ ? Vec3(static_cast<double>(towards_x_[point]),
+                                         static_cast<double>(towards_y_[point]),
+                                         static_cast<double>(towards_z_[point]))
+                                  : Vec3::Zero();
+  // Where it is not known where the surface lies, the whole velocity is opposed.
+  felt.force_W = closing_drag_force(felt.mu_e, area, v_WR, towards_W);
+  return felt;
 }
 
 Reason Teleoperation::Body::reason(const FieldView& view) const noexcept {

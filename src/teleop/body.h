@@ -51,6 +51,8 @@ class Teleoperation::Body {
 
   /// Drag of each link on its own motion: wrench = -drag * (v_WLo, w_WL), in W, about its origin.
   const std::vector<Matrix6>& link_drag() const noexcept { return link_drag_; }
+  /// What one point felt in the last feel().
+  PointDrag point_drag(std::uint32_t point) const noexcept;
   /// Which point contributed most in the last feel().
   Reason reason(const FieldView& view) const noexcept;
   /// Whether any link's points may be in the workspace.

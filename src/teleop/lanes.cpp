@@ -5,14 +5,7 @@
 
 #include <cstring>
 
-// One binary for every x86-64: the loader picks the widest vectors the processor has. Sanitizers do
-// not bear code that runs before them, which is how the loader picks.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define VICINITY_WIDEST_VECTORS __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
-#else
-#define VICINITY_WIDEST_VECTORS
-#endif
+#include "vicinity/geometry/widest_vectors.h"
 
 namespace vicinity {
 namespace {

@@ -137,6 +137,10 @@ int Teleoperation::joint_count() const noexcept { return static_cast<int>(q_.siz
 
 const BodyPoints& Teleoperation::points() const noexcept { return body_->points(); }
 
+PointDrag Teleoperation::point_drag(std::uint32_t point) const noexcept {
+  return body_->point_drag(point);
+}
+
 void Teleoperation::restart() noexcept {
   velocity_.restart();
   handle_velocity_.restart();

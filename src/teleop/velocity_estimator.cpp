@@ -13,7 +13,7 @@
 namespace vicinity {
 namespace {
 
-double positive(double value, const char* what) {
+double positive_seconds(double value, const char* what) {
   if (value > 0 && std::isfinite(value)) return value;
   throw Error({.where = "velocity estimator",
                .what = std::string(what) + " is not a positive number of seconds",
@@ -58,8 +58,8 @@ const char* to_string(VelocityStatus status) noexcept {
 }
 
 VelocityEstimator::VelocityEstimator(const VelocityOptions& options)
-    : longest_window_s_(positive(options.longest_window_s, "the longest window")),
-      longest_gap_s_(positive(options.longest_gap_s, "the longest gap")),
+    : longest_window_s_(positive_seconds(options.longest_window_s, "the longest window")),
+      longest_gap_s_(positive_seconds(options.longest_gap_s, "the longest gap")),
       noise_band_(checked_band(options.noise_band)),
       velocity_(AxisVector::Zero(options.noise_band.size())) {
   positions_.setZero(capacity, noise_band_.size());

@@ -11,11 +11,18 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <filesystem>
+#include <memory>
 #include <mutex>
+#include <optional>
+#include <ranges>
 #include <utility>
 
 #include "merge.h"
+#include "object_voxel_array.h"
+#include "object_work.h"
 #include "vicinity/geometry/error.h"
+#include "vicinity/layers/layer_bricks.h"
 #include "vicinity/mesh/inspection.h"
 #include "vicinity/mesh/mesh_file.h"
 
@@ -69,24 +76,14 @@ int reach_vox(const SceneObject& object) {
   return object.q * object.m + (object.layers == LayerShape::distance ? 2 : 1);
 }
 
-/// One object on its way through the stages.
-struct Work {
-  explicit Work(const SceneObject& o) : object(&o) {}
-
-  const SceneObject* object;
-  TriangleMesh mesh;
-  MeshInspection inspection;
-  ObjectVoxelArray array;
-};
-
 /// Refuses a mesh without extent, and one that no memory would hold at this voxel size: mostly a
 /// wrong unit.
-void check_usable(const Work& work, double h) {
+void check_usable(const ObjectWork& work, double h) {
   if (work.inspection.verdict == MeshInspection::Verdict::unusable) {
     throw Error({.what = "the mesh has no triangle with any extent",
                  .hint = "vicinity check, which says what is wrong with it"});
   }
-  constexpr double most_voxels = 1e9;         // of boundary, about a byte each for every layer
+  constexpr double most_voxels = 1e11;        // of boundary: hours, and a file of many GiB
   constexpr double farthest_voxel = 1 << 30;  // an index of 32 bits, with room for layers
   const TriangleMesh& mesh = work.mesh;
   double area = 0;
@@ -108,29 +105,17 @@ void check_usable(const Work& work, double h) {
 
 /// Bounds that hold every object with all its layers, from a multiple of the voxel size, so that a
 /// scene that grows keeps its grid.
-Box bounds_around(const std::vector<Work>& works, double h) {
+Box bounds_around(const std::vector<ObjectWork>& works, double h) {
   Box bounds;
-  for (const Work& work : works) {
+  for (const ObjectWork& work : works) {
     const Vec3 margin = Vec3::Constant(h * reach_vox(*work.object));
-    const Box box = work.mesh.bounds();
+    const Box& box = work.inspection.bounds;
     bounds.extend(Box(box.min() - margin, box.max() + margin));
   }
   return {((bounds.min() / h).array().floor() * h).matrix(), bounds.max()};
 }
 
-DistanceLayers layers_of(const Work& work, const Workspace& workspace) {
-  const SceneObject& object = *work.object;
-  if (object.layers == LayerShape::distance) {
-    return distance_layers(work.mesh, work.array.boundary, work.array.inner, workspace, object.m,
-                           object.q);
-  }
-  const ShapingElement element(object.layers, object.m);
-  DistanceLayers layers;
-  layers.neighbours = ranked_neighbours(work.array.boundary, work.array.inner, element, object.q);
-  return layers;
-}
-
-FieldObject describe(const Work& work, double h) {
+FieldObject describe(const ObjectWork& work, double h) {
   const SceneObject& object = *work.object;
   FieldObject described{.name = object.name,
                         .layers = object.layers,
@@ -140,12 +125,11 @@ FieldObject describe(const Work& work, double h) {
                         .bound_mm = rank_bound_vox(object.layers, object.m, object.q) * h * 1000,
                         .closed = work.inspection.closed,
                         .triangles = work.inspection.triangles,
-                        .boundary = work.array.boundary.count(),
-                        .inner = work.array.inner.count(),
+                        .boundary = work.array->counts()[object_code::boundary],
+                        .inner = work.array->counts()[object_code::inner],
                         .ranks = {}};
-  for (const VoxelSet& rank : work.array.layers.neighbours.ranks) {
-    described.ranks.push_back(rank.count());
-  }
+  for (int n = 1; n <= object.q; ++n)
+    described.ranks.push_back(work.array->counts()[object_code::of_rank(n)]);
   return described;
 }
 
@@ -161,7 +145,7 @@ const char* words_for(InnerMethod method) {
   return "";
 }
 
-std::vector<std::string> remarks_on(const Work& work, const FieldObject& described,
+std::vector<std::string> remarks_on(const ObjectWork& work, const FieldObject& described,
                                     const Workspace& workspace) {
   const SceneObject& object = *work.object;
   std::vector<std::string> remarks;
@@ -177,7 +161,7 @@ std::vector<std::string> remarks_on(const Work& work, const FieldObject& describ
                                   object.coding.mu.size() - static_cast<std::size_t>(object.q)));
   }
   const Vec3 margin = Vec3::Constant(workspace.voxel_size * reach_vox(object));
-  const Box box = work.mesh.bounds();
+  const Box& box = work.inspection.bounds;
   const Vec3 far_corner =
       workspace.origin +
       workspace.voxel_size * Vec3(workspace.dims.i, workspace.dims.j, workspace.dims.k);
@@ -188,110 +172,169 @@ std::vector<std::string> remarks_on(const Work& work, const FieldObject& describ
   return remarks;
 }
 
-/// The stages of a build: timed, announced, and run for all objects at once.
-class Stages {
- public:
-  Stages(const BuildOptions& options, std::vector<Work>& works)
-      : options_(options), works_(works) {}
-
-  /// Runs `step(work)` for every object. Of several errors, the first object's is thrown.
-  template <class Step>
-  void run(const char* stage, double share, double& seconds, Step&& step) {
-    run_whole(stage, share, seconds, [&](const auto& progress) {
-      std::vector<std::exception_ptr> errors(works_.size());
-      std::mutex mutex;
-      std::size_t finished = 0;
-      tbb::parallel_for(std::size_t{0}, works_.size(), [&](std::size_t w) {
-        try {
-          step(works_[w]);
-        } catch (...) {
-          errors[w] = std::current_exception();
-        }
-        const std::lock_guard lock(mutex);
-        progress(static_cast<double>(++finished) / static_cast<double>(works_.size()));
-      });
-      for (std::size_t w = 0; w < works_.size(); ++w) {
-        if (errors[w]) rethrow_naming(*works_[w].object, errors[w]);
-      }
-    });
+[[noreturn]] void rethrow_naming(const SceneObject& object, std::exception_ptr error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const Error& e) {
+    ErrorParts parts = e.parts();
+    parts.where = parts.where.empty() ? title(object) : title(object) + ", " + parts.where;
+    throw Error(parts);
   }
+}
 
-  /// Runs `step(progress)` once.
-  template <class Step>
-  void run_whole(const char* stage, double share, double& seconds, Step&& step) {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    step([&](double done) {
-      if (options_.progress) options_.progress(stage, std::min(1.0, done_ + share * done));
-    });
-    done_ += share;
-    seconds = std::chrono::duration<double>(Clock::now() - start).count();
+/// Runs `step(work)` for every object at once. Of several errors, the first object's is thrown.
+template <class Step>
+void for_each_work(std::vector<ObjectWork>& works, Step&& step) {
+  std::vector<std::exception_ptr> errors(works.size());
+  tbb::parallel_for(std::size_t{0}, works.size(), [&](std::size_t w) {
+    try {
+      step(works[w]);
+    } catch (...) {
+      errors[w] = std::current_exception();
+    }
+  });
+  for (std::size_t w = 0; w < works.size(); ++w) {
+    if (errors[w]) rethrow_naming(*works[w].object, errors[w]);
+  }
+}
+
+/// Tells how far a build is. Parts of a stage report by themselves; nobody reports at the same time
+/// as another, and what is told never falls.
+class Progress {
+ public:
+  explicit Progress(const BuildOptions& options) : options_(options) {}
+
+  /// Starts a stage that takes `share` of the build and consists of `parts` of the same weight.
+  void start(const char* stage, double share, std::size_t parts) {
+    begun_ += share_;
+    stage_ = stage;
+    share_ = share;
+    done_.assign(parts, 0);
+    sum_ = 0;
+  }
+  /// Part `part` of the stage is done to this degree, 0..1.
+  void onward(std::size_t part, double done) {
+    if (!options_.progress) return;
+    const std::lock_guard lock(mutex_);
+    sum_ += done - done_[part];
+    done_[part] = done;
+    const double all = sum_ / static_cast<double>(done_.size());
+    told_ = std::max(told_, std::min(1.0, begun_ + share_ * all));
+    options_.progress(stage_, told_);
   }
 
  private:
-  [[noreturn]] static void rethrow_naming(const SceneObject& object, std::exception_ptr error) {
-    try {
-      std::rethrow_exception(error);
-    } catch (const Error& e) {
-      ErrorParts parts = e.parts();
-      parts.where = parts.where.empty() ? title(object) : title(object) + ", " + parts.where;
-      throw Error(parts);
-    }
-  }
-
   const BuildOptions& options_;
-  std::vector<Work>& works_;
-  double done_ = 0;
+  std::mutex mutex_;
+  const char* stage_ = "";
+  double begun_ = 0, share_ = 0, sum_ = 0, told_ = 0;
+  std::vector<double> done_;
 };
 
-BuildResult build_in_arena(const Scene& scene, const BuildOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
-  // Refuses a voxel size that is none before any mesh is read.
-  Workspace workspace = Workspace::covering(Box(Vec3::Zero(), Vec3::Zero()), scene.voxel_size);
-  std::vector<Work> works;
-  for (const SceneObject* object : sorted_objects(scene)) works.emplace_back(*object);
-  const double h = scene.voxel_size;
-  BuildReport report;
-  ViscosityField field;
-  Stages stages(options, works);
+class Seconds {
+ public:
+  double since_last() {
+    const auto now = Clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
 
-  stages.run("read", 0.1, report.seconds.read, [&](Work& work) {
-    work.mesh = read_and_place(*work.object);
-    work.inspection = inspect(work.mesh);
-    check_usable(work, h);
-  });
-  workspace = Workspace::covering(scene.bounds.value_or(bounds_around(works, h)), h);
-  stages.run("voxelise", 0.2, report.seconds.voxelise, [&](Work& work) {
-    work.array.boundary = boundary_voxels(work.mesh, workspace, work.object->boundary);
-  });
-  stages.run("fill", 0.2, report.seconds.fill, [&](Work& work) {
-    work.array.inner = inner_voxels(work.mesh, work.array.boundary, workspace, work.object->inner);
-  });
-  stages.run("rank", 0.3, report.seconds.rank,
-             [&](Work& work) { work.array.layers = layers_of(work, workspace); });
-  stages.run_whole("merge", 0.2, report.seconds.merge, [&](const auto& progress) {
-    std::vector<FieldObject> objects;
-    std::vector<ObjectVoxelArray> arrays;
-    for (Work& work : works) {
-      objects.push_back(describe(work, h));
-      for (auto& r : remarks_on(work, objects.back(), workspace)) report.remarks.push_back(r);
-      arrays.push_back(std::move(work.array));
-    }
-    field = merge(workspace, objects, std::move(arrays), progress);
-  });
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
 
-  report.boundary = field.voxel_counts().boundary;
-  report.inner = field.voxel_counts().inner;
-  report.neighbour = field.voxel_counts().neighbour;
-  report.threads = tbb::this_task_arena::max_concurrency();
-  report.seconds.total =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return {field, report};
+/// Shares the wall time of the tiles out to the stages that they went through.
+void share_out(double wall, const StageTimes& times, BuildReport::Seconds& seconds) {
+  const double all = static_cast<double>(times.voxelise + times.fill + times.rank);
+  const auto part = [&](std::int64_t time) {
+    return all > 0 ? wall * static_cast<double>(time) / all : 0;
+  };
+  seconds.voxelise = part(times.voxelise);
+  seconds.fill = part(times.fill);
+  seconds.rank = part(times.rank);
 }
 
 }  // namespace
 
-BuildResult build_field(const Scene& scene, const BuildOptions& options) {
+struct FieldBuilder::Kept {
+  Workspace workspace;
+  std::vector<ObjectWork> works;  // without their meshes, by name
+  std::vector<FieldObject> objects;
+  MergedField merged;
+
+  /// What is kept of an object that is the same as then; null where nothing is.
+  const ObjectWork* same(const ObjectWork& work) const {
+    const auto found = std::find_if(works.begin(), works.end(), [&](const ObjectWork& w) {
+      return w.identity == work.identity;
+    });
+    return found == works.end() ? nullptr : &*found;
+  }
+
+  /// Marks the regions that hold other voxels than they did, or other winners: where an object that
+  /// is not the same now was or is. Nothing where all is to be merged anew.
+  std::optional<std::vector<char>> changed_regions(
+      const Workspace& now, const std::vector<ObjectWork>& new_works,
+      const std::vector<FieldObject>& new_objects) const;
+};
+
+namespace {
+
+bool same_grid(const Workspace& a, const Workspace& b) {
+  return a.origin == b.origin && a.voxel_size == b.voxel_size;
+}
+
+/// Marks the regions of the workspace in which an array has any voxel.
+void mark(const ObjectVoxelArray& array, const VoxelIndex& dims, std::vector<char>& marked) {
+  const VoxelIndex lo = array.lo(), size = array.size();
+  const VoxelBox regions =
+      VoxelBox{lo, {lo.i + size.i, lo.j + size.j, lo.k + size.k}}.within({{0, 0, 0}, dims});
+  for (std::int32_t k = regions.lo.k; k < regions.hi.k; ++k) {
+    for (std::int32_t j = regions.lo.j; j < regions.hi.j; ++j) {
+      for (std::int32_t i = regions.lo.i; i < regions.hi.i; ++i) {
+        if (array.codes().root()[array.cell_of({i, j, k})] == FieldReference::uniform(0)) continue;
+        marked[(static_cast<std::size_t>(k) * static_cast<std::size_t>(dims.j) +
+                static_cast<std::size_t>(j)) *
+                   static_cast<std::size_t>(dims.i) +
+               static_cast<std::size_t>(i)] = 1;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<std::vector<char>> FieldBuilder::Kept::changed_regions(
+    const Workspace& now, const std::vector<ObjectWork>& new_works,
+    const std::vector<FieldObject>& new_objects) const {
+  const VoxelIndex& d = now.dims;
+  // Codes of voxels are those of the earlier field only where the table of codes is the same.
+  const auto same_codes = [](const FieldObject& a, const FieldObject& b) {
+    return a.name == b.name && a.q == b.q && a.layers == b.layers;
+  };
+  if (!same_grid(workspace, now) || !(workspace.dims == d) ||
+      !std::ranges::equal(objects, new_objects, same_codes)) {
+    return std::nullopt;
+  }
+  const VoxelIndex dims = {(d.i + 63) >> 6, (d.j + 63) >> 6, (d.k + 63) >> 6};
+  std::vector<char> changed(static_cast<std::size_t>(dims.i) * static_cast<std::size_t>(dims.j) *
+                            static_cast<std::size_t>(dims.k));
+  for (std::size_t o = 0; o < works.size(); ++o) {
+    const bool same = works[o].array == new_works[o].array &&
+                      objects[o].coding.mu == new_objects[o].coding.mu &&
+                      objects[o].coding.skin == new_objects[o].coding.skin;
+    if (same) continue;
+    mark(*works[o].array, dims, changed);
+    mark(*new_works[o].array, dims, changed);
+  }
+  return changed;
+}
+
+FieldBuilder::FieldBuilder() = default;
+FieldBuilder::~FieldBuilder() = default;
+FieldBuilder::FieldBuilder(FieldBuilder&&) noexcept = default;
+FieldBuilder& FieldBuilder::operator=(FieldBuilder&&) noexcept = default;
+
+BuildResult FieldBuilder::build(const Scene& scene, const BuildOptions& options) {
   if (options.threads < 0) {
     throw Error({.where = "threads",
                  .what = "not a number of threads",
@@ -300,6 +343,89 @@ BuildResult build_field(const Scene& scene, const BuildOptions& options) {
   }
   tbb::task_arena arena(options.threads == 0 ? tbb::task_arena::automatic : options.threads);
   return arena.execute([&] { return build_in_arena(scene, options); });
+}
+
+BuildResult FieldBuilder::build_in_arena(const Scene& scene, const BuildOptions& options) {
+  Seconds all, stage;
+  // Refuses a voxel size that is none before any mesh is read.
+  Workspace workspace = Workspace::covering(Box(Vec3::Zero(), Vec3::Zero()), scene.voxel_size);
+  std::vector<ObjectWork> works;
+  for (const SceneObject* object : sorted_objects(scene)) works.emplace_back(*object);
+  const double h = scene.voxel_size;
+  BuildReport report;
+  Progress progress(options);
+  const auto index_of = [&](const ObjectWork& work) {
+    return static_cast<std::size_t>(&work - works.data());
+  };
+
+  progress.start("read", 0.1, works.size());
+  const auto read = [&](ObjectWork& work) {
+    work.mesh = read_and_place(*work.object);
+    work.inspection = inspect(work.mesh);
+    check_usable(work, h);
+  };
+  for_each_work(works, [&](ObjectWork& work) {
+    const ObjectWork* same = kept_ ? kept_->same(work) : nullptr;
+    if (same != nullptr) {
+      work.inspection = same->inspection;
+      work.array = same->array;
+    } else {
+      read(work);
+    }
+    progress.onward(index_of(work), 1);
+  });
+  workspace = Workspace::covering(scene.bounds.value_or(bounds_around(works, h)), h);
+  if (kept_ && !same_grid(kept_->workspace, workspace)) {
+    for_each_work(works, [&](ObjectWork& work) {
+      if (std::exchange(work.array, nullptr)) read(work);
+    });
+  }
+  report.seconds.read = stage.since_last();
+
+  progress.start("rank", 0.7, works.size());
+  StageTimes times;
+  report.objects_ranked = static_cast<int>(std::count_if(
+      works.begin(), works.end(), [](const ObjectWork& w) { return w.array == nullptr; }));
+  for_each_work(works, [&](ObjectWork& work) {
+    const auto onward = [&](double done) { progress.onward(index_of(work), done); };
+    if (!work.array) {
+      work.array = std::make_shared<const ObjectVoxelArray>(
+          object_voxel_array(*work.object, work.mesh, workspace, times, onward));
+      work.mesh = {};
+    }
+    onward(1);
+  });
+  share_out(stage.since_last(), times, report.seconds);
+
+  progress.start("merge", 0.2, 1);
+  std::vector<FieldObject> objects;
+  std::vector<const ObjectVoxelArray*> arrays;
+  for (const ObjectWork& work : works) {
+    objects.push_back(describe(work, h));
+    for (auto& r : remarks_on(work, objects.back(), workspace)) report.remarks.push_back(r);
+    arrays.push_back(work.array.get());
+  }
+  const auto changed = kept_ ? kept_->changed_regions(workspace, works, objects) : std::nullopt;
+  const auto earlier =
+      changed ? std::optional(EarlierMerge{kept_->merged, *changed}) : std::nullopt;
+  MergedField merged = merge(workspace, objects, arrays, earlier ? &*earlier : nullptr,
+                             [&](double done) { progress.onward(0, done); });
+  report.seconds.merge = stage.since_last();
+
+  const ViscosityField field = merged.field;
+  report.boundary = field.voxel_counts().boundary;
+  report.inner = field.voxel_counts().inner;
+  report.neighbour = field.voxel_counts().neighbour;
+  report.threads = tbb::this_task_arena::max_concurrency();
+  for (ObjectWork& work : works) work.object = nullptr;  // the scene is the caller's
+  kept_ = std::make_unique<Kept>(
+      Kept{workspace, std::move(works), std::move(objects), std::move(merged)});
+  report.seconds.total = all.since_last();
+  return {field, report};
+}
+
+BuildResult build_field(const Scene& scene, const BuildOptions& options) {
+  return FieldBuilder().build(scene, options);
 }
 
 }  // namespace vicinity

@@ -10,11 +10,11 @@
 #include <bit>
 #include <cmath>
 
-#include "packed_brick.h"
 #include "verified_image.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/layers/distance_layers.h"
 #include "vicinity/viscosity/field_image.h"
+#include "vicinity/viscosity/packed_brick.h"
 
 namespace vicinity {
 
@@ -23,11 +23,6 @@ static_assert(std::endian::native == std::endian::little,
 static_assert(sizeof(VoxelRecord) == 4 && std::is_trivially_copyable_v<VoxelRecord>);
 
 namespace {
-
-/// Position of a voxel's brick in its region.
-std::size_t brick_in_region(const VoxelIndex& v) noexcept {
-  return static_cast<std::size_t>(((v.k >> 3 & 7) * 8 + (v.j >> 3 & 7)) * 8 + (v.i >> 3 & 7));
-}
 
 std::vector<double> viscosities_of(const std::vector<FieldObject>& objects,
                                    const std::vector<VoxelRecord>& records) {
@@ -51,33 +46,11 @@ struct ViscosityField::Index : VerifiedImage {
   std::vector<double> viscosities;   // by code
   std::vector<char> keeps_distance;  // by code
 
-  bool holds(const VoxelIndex& v) const noexcept {
-    return (static_cast<std::uint32_t>(v.i) < static_cast<std::uint32_t>(workspace.dims.i)) &
-           (static_cast<std::uint32_t>(v.j) < static_cast<std::uint32_t>(workspace.dims.j)) &
-           (static_cast<std::uint32_t>(v.k) < static_cast<std::uint32_t>(workspace.dims.k));
-  }
-
-  /// The reference that settles a voxel of the workspace: uniform, or to its brick.
-  std::uint32_t reference(const Layer& layer, const VoxelIndex& v) const noexcept {
-    const auto dim_i = static_cast<std::size_t>(region_dims.i);
-    const auto dim_j = static_cast<std::size_t>(region_dims.j);
-    const std::size_t region =
-        (static_cast<std::size_t>(v.k >> 6) * dim_j + static_cast<std::size_t>(v.j >> 6)) * dim_i +
-        static_cast<std::size_t>(v.i >> 6);
-    const std::uint32_t reference = layer.root[region];
-    if (FieldReference::is_uniform(reference)) return reference;
-    return layer.regions[std::size_t{reference} * 512 + brick_in_region(v)];
-  }
-
-  VoxelCode code(std::uint32_t reference, const VoxelIndex& v) const noexcept {
-    if (FieldReference::is_uniform(reference)) return static_cast<VoxelCode>(reference);
-    const std::byte* brick = codes.bricks + std::size_t{reference & FieldReference::number_mask} *
-                                                FieldReference::brick_unit;
-    return code_in_brick(brick, reference >> FieldReference::width_shift, voxel_in_brick(v));
-  }
+  SparseCodes sparse_codes;      // what codes and distances point to
+  SparseCodes sparse_distances;  // of these, only the references
 
   std::uint16_t distance_steps(const VoxelIndex& v) const noexcept {
-    const std::uint32_t at = reference(distances, v);
+    const std::uint32_t at = sparse_distances.reference(v);
     if (FieldReference::is_uniform(at)) return static_cast<std::uint16_t>(at);
     return load_16(distances.bricks + (std::size_t{at} * 512 + voxel_in_brick(v)) * 2);
   }
@@ -112,7 +85,7 @@ void ViscosityField::Index::interpolate(const Vec3& p_grid, FieldSample& sample)
                          clamped(base.z() + 1, workspace.dims.k)};
 
   const bool one_brick = ((lo.i ^ hi.i) >> 3 | (lo.j ^ hi.j) >> 3 | (lo.k ^ hi.k) >> 3) == 0;
-  const std::uint32_t shared = reference(codes, lo);
+  const std::uint32_t shared = sparse_codes.reference(lo);
   if (one_brick && shared == FieldReference::uniform(0)) return;
 
   struct Corner {
@@ -125,7 +98,8 @@ void ViscosityField::Index::interpolate(const Vec3& p_grid, FieldSample& sample)
   double band_vox = 256;  // of the thinnest layers around p; 256 is beyond every layer
   for (std::size_t c = 0; c < 8; ++c) {
     const VoxelIndex v = {c & 1 ? hi.i : lo.i, c & 2 ? hi.j : lo.j, c & 4 ? hi.k : lo.k};
-    const VoxelCode code_of_v = code(one_brick ? shared : reference(codes, v), v);
+    const VoxelCode code_of_v =
+        sparse_codes.code(one_brick ? shared : sparse_codes.reference(v), v);
     corners[c] = {
         v, code_of_v,
         (c & 1 ? t.x() : 1 - t.x()) * (c & 2 ? t.y() : 1 - t.y()) * (c & 4 ? t.z() : 1 - t.z())};
@@ -170,20 +144,13 @@ std::span<const std::byte> ViscosityField::image() const noexcept {
   return {index_->bytes.get(), index_->size};
 }
 
-VoxelCode ViscosityField::code_at(const VoxelIndex& v) const noexcept {
-  const Index& field = *index_;
-  if (!field.holds(v)) return 0;
-  return field.code(field.reference(field.codes, v), v);
-}
-
 bool ViscosityField::brick_is_empty(const VoxelIndex& v) const noexcept {
-  const Index& field = *index_;
-  return !field.holds(v) || field.reference(field.codes, v) == FieldReference::uniform(0);
+  return !codes_.holds(v) || codes_.reference(v) == FieldReference::uniform(0);
 }
 
 double ViscosityField::distance_vox_at(const VoxelIndex& v) const noexcept {
   const Index& field = *index_;
-  if (field.distances.root == nullptr || !field.holds(v)) return -1;
+  if (field.distances.root == nullptr || !codes_.holds(v)) return -1;
   const std::uint16_t steps = field.distance_steps(v);
   return steps == no_distance ? -1 : steps * distance_step_vox;
 }
@@ -201,7 +168,7 @@ FieldSample ViscosityField::at(const Vec3& p_W) const noexcept {
   const VoxelIndex v = {static_cast<std::int32_t>(p_grid.x()),
                         static_cast<std::int32_t>(p_grid.y()),
                         static_cast<std::int32_t>(p_grid.z())};
-  const VoxelCode code = field.code(field.reference(field.codes, v), v);
+  const VoxelCode code = codes_.code(codes_.reference(v), v);
   sample.record = field.records[code];
   sample.viscosity = field.viscosities[code];
   if (field.distances.root == nullptr) return sample;
@@ -230,7 +197,7 @@ ViscosityField ViscosityField::with_codings(const std::vector<Coding>& codings) 
     object.coding = codings[o];
   }
   index->viscosities = viscosities_of(index->objects, index->records);
-  ViscosityField field;
+  ViscosityField field = *this;
   field.index_ = std::move(index);
   return field;
 }
@@ -246,7 +213,13 @@ ViscosityField ViscosityField::from_image(std::shared_ptr<const std::byte[]> byt
     index->keeps_distance.push_back(record.kind != VoxelKind::empty &&
                                     index->objects[record.object].layers == LayerShape::distance);
   }
+  const auto sparse = [&](const VerifiedImage::Layer& layer) {
+    return SparseCodes(index->workspace.dims, layer.root, layer.regions, layer.bricks);
+  };
+  index->sparse_codes = sparse(index->codes);
+  index->sparse_distances = sparse(index->distances);
   ViscosityField field;
+  field.codes_ = index->sparse_codes;
   field.index_ = std::move(index);
   return field;
 }

@@ -13,9 +13,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "packed_brick.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/viscosity/field_image.h"
+#include "vicinity/viscosity/packed_brick.h"
 
 namespace vicinity {
 namespace {
@@ -208,23 +208,13 @@ bool references_hold(std::span<const std::uint32_t> root, std::span<const std::u
 std::size_t packed_brick_size(std::span<const std::byte> bytes, unsigned width, std::size_t codes) {
   const std::size_t packed = std::size_t{64} << width;
   if (width > 4 || bytes.size() < packed) return 0;
-  std::size_t table = packed;
-  std::size_t entries = 0;
-  if (width == 4) {
-    table = 0;
-    entries = 512;
-  } else {
-    unsigned last = 0;
-    for (std::size_t v = 0; v < 512; ++v) {
-      last = std::max(last, packed_code(bytes.data(), width, v));
-    }
-    entries = last + 1;
-  }
-  const std::size_t size =
-      (table + entries * 2 + FieldReference::brick_unit - 1) & ~(FieldReference::brick_unit - 1);
+  const std::size_t entries = table_size(bytes.data(), width);
+  const std::size_t size = brick_size(width, entries, FieldReference::brick_unit);
   if (bytes.size() < size) return 0;
-  for (std::size_t n = 0; n < entries; ++n) {
-    if (load_16(bytes.data() + table + n * 2) >= codes) return 0;
+  // Without a table, the codes themselves stand in its place.
+  const std::size_t first = width == 4 ? 0 : packed;
+  for (std::size_t n = 0; n < (width == 4 ? 512 : entries); ++n) {
+    if (load_16(bytes.data() + first + n * 2) >= codes) return 0;
   }
   return size;
 }

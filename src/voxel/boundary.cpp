@@ -1,201 +1,129 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-// How `exact` finds the voxels of one triangle. A layer k is a slice of the triangle, a row j a
-// slice of that slice; what is left is convex, so its voxels in the row are one run:
-//
-//      y                     the slice of layer k, and the runs of its rows
-//      |        ______
-//    j+2 - - - /- - - \- -
-//      |      /    ####\##      row j+1: from the leftmost to the rightmost point of the slice's
-//    j+1 - - /- - - - - -\-              outline within the row
-//      |    /_____________\     row j
-//      |
-//
-// The outline consists of pieces of the triangle's edges and of the two cuts at z = k and z = k+1.
-// Each piece is walked through the rows, and gives each row its end points and its crossings with
-// the planes between rows: leftmost and rightmost are always among those. No clipped polygon is
-// ever built.
-//
-// Voxels are half-open, [k, k+1): a point on the cut at z = k+1, or on the upper side of a row, is
-// only approached. Where such an open point has a coordinate that is exactly whole, the voxel
-// beyond is not touched. A plane along the grid, or at 45 degrees to it, so gets a skin of one
-// voxel. Coordinates that were computed and are not exactly whole count for both voxels within the
-// rounding error: in doubt a voxel is marked.
-
 #include "vicinity/voxel/boundary.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <optional>
-#include <vector>
 
+#include "few_voxels.h"
+#include "row_axes.h"
+#include "slab_writer.h"
 #include "slabbed_mesh.h"
+#include "surface_voxels.h"
+#include "triangle_tracer.h"
 
 namespace vicinity {
 namespace {
 
-// Interpolating along an edge rounds at most nine times by 2^-53 of the farthest coordinate.
-constexpr double rounding = 0x1p-49;
+// From this distance on rounding cannot move a voxel from one side of an axis to the other: far
+// more than the grazing depth, and met by one triangle in some hundred thousand.
+constexpr double sure_vox = 0x1p-24;
 
-struct Point {
-  double x, y;
-  bool open;  // only approached by the slice, not part of it
-};
+// Rows of as many in a layer are looked at all together.
+constexpr std::int32_t few_rows = 8;
 
-// Marks the voxels of one triangle after another within one slab.
-class TriangleTracer {
+// Marks the voxels of one triangle after another within one slab: by separating axes, which answer
+// for whole rows, and by tracing where those leave a doubt.
+class TriangleMarker {
  public:
-  TriangleTracer(VoxelSet& voxels, double reach)
-      : voxels_(voxels), slack_(rounding * std::max(reach, 1.0)) {}
+  TriangleMarker(VoxelSet& voxels, std::int32_t slab, double reach)
+      : slab_(voxels, slab),
+        tracer_(slab_, voxels.box(), reach),
+        box_(voxels.box()),
+        margin_(sure_vox + 32 * rounding * std::max(reach, 1.0)),
+        k_begin_(slab * 8) {}
 
-  // Marks the triangle's voxels in layers k_begin <= k < k_end.
-  void trace(const std::array<Vec3, 3>& corners, std::int32_t k_begin, std::int32_t k_end) {
+  void mark(const std::array<Vec3, 3>& corners) {
     const Vec3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
     const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
     lo_ = {floor_index(low.x()), floor_index(low.y()), floor_index(low.z())};
-    hi_ = {floor_index(high.x()), floor_index(high.y()), floor_index(high.z())};
-    k_begin = std::max(k_begin, lo_.k);
-    k_end = std::min(k_end, hi_.k + 1);
-    if (lo_.j == hi_.j && (lo_.k == hi_.k || lo_.i == hi_.i)) {
-      for (std::int32_t k = k_begin; k < k_end; ++k) {
-        voxels_.insert_run(lo_.i, hi_.i + 1, lo_.j, k);
+    const VoxelIndex hi{floor_index(high.x()), floor_index(high.y()), floor_index(high.z())};
+    // Layers and rows beyond the box are left out before they cost anything: a floor is far larger
+    // than the tiles it is voxelised in.
+    const std::int32_t first = std::max({k_begin_, lo_.k, box_.lo.k});
+    const std::int32_t last = std::min({k_begin_ + 7, hi.k, box_.hi.k - 1});
+    const RowAxes::Run rows = {std::max(box_.lo.j - lo_.j, 0),
+                               std::min(hi.j, box_.hi.j - 1) - lo_.j};
+    if (first > last || rows.first > rows.last) return;
+    if ((lo_.i == hi.i) + (lo_.j == hi.j) + (lo_.k == hi.k) >= 2) {
+      // A triangle is connected: it meets every voxel of a bounding box that is but one row.
+      for (std::int32_t k = first; k <= last; ++k) {
+        for (std::int32_t j = rows.first; j <= rows.last; ++j) slab_.put(lo_.i, hi.i, lo_.j + j, k);
       }
       return;
     }
-    const std::array edges{Edge(corners[0], corners[1]), Edge(corners[1], corners[2]),
-                           Edge(corners[2], corners[0])};
-    rows_.resize(std::max(rows_.size(), static_cast<std::size_t>(hi_.j - lo_.j) + 1));
-    for (std::int32_t k = k_begin; k < k_end; ++k) {
-      outline(edges, k);
-      mark(k);
+    const bool is_small = std::max({hi.i - lo_.i, hi.j - lo_.j, hi.k - lo_.k}) == 1;
+    if (is_small && box_.contains(lo_) && box_.contains(hi)) {
+      unsigned voxels = 0;
+      if (few_voxels(corners, lo_, voxels)) {
+        // Those of the bounding box that are in the slab.
+        voxels &= hi.i == lo_.i ? 0x55u : 0xffu;
+        voxels &= hi.j == lo_.j ? 0x33u : 0xffu;
+        voxels &= (first == lo_.k ? 0x0fu : 0u) | (last > lo_.k ? 0xf0u : 0u);
+        slab_.put_cube(lo_, voxels);
+        return;
+      }
+    }
+    if (!axes_.set(corners, lo_, hi, margin_) || !mark_layers(first, last, rows)) {
+      tracer_.trace(corners, first, last + 1);
     }
   }
 
  private:
-  // From the lower end to the upper, so that triangles that share an edge cut it at the same point.
-  struct Edge {
-    Edge(const Vec3& a, const Vec3& b) : lower(a), upper(b) {
-      if (std::array{b.z(), b.y(), b.x()} < std::array{a.z(), a.y(), a.x()}) {
-        std::swap(lower, upper);
+  // Marks layers first <= k <= last; false where a voxel is in doubt. Rows count from lo_.j.
+  bool mark_layers(std::int32_t first, std::int32_t last, const RowAxes::Run& box_rows) {
+    if (box_rows.last - box_rows.first < few_rows) return mark_rows(first, last, box_rows);
+    for (std::int32_t k = first; k <= last; ++k) {
+      RowAxes::Run rows = axes_.rows_of_layer(k - lo_.k);
+      rows = {std::max(rows.first, box_rows.first), std::min(rows.last, box_rows.last)};
+      if (rows.first <= rows.last && !mark_rows(k, k, rows)) return false;
+    }
+    return true;
+  }
+
+  bool mark_rows(std::int32_t first, std::int32_t last, const RowAxes::Run& js) {
+    std::array<std::int32_t, RowAxes::lanes> row_j, row_k;
+    RowAxes::Rows rows;
+    std::array<RowAxes::Run, RowAxes::lanes> runs;
+    for (std::int32_t j = js.first, k = first; k <= last;) {
+      for (std::size_t l = 0; l < RowAxes::lanes; ++l) {
+        // Lanes that are left over repeat the one before.
+        row_j[l] = k <= last ? j : row_j[l - 1];
+        row_k[l] = k <= last ? k : row_k[l - 1];
+        rows.j[l] = row_j[l];
+        rows.k[l] = row_k[l] - lo_.k;
+        if (++j > js.last) {
+          j = js.first;
+          ++k;
+        }
+      }
+      if (!axes_.runs(rows, runs)) return false;
+      for (std::size_t l = 0; l < RowAxes::lanes; ++l) {
+        if (runs[l].first > runs[l].last) continue;
+        slab_.put(lo_.i + runs[l].first, lo_.i + runs[l].last, lo_.j + row_j[l], row_k[l]);
       }
     }
-    Point at(double z, bool open) const {
-      if (z == upper.z()) return {upper.x(), upper.y(), open};
-      const double t = (z - lower.z()) / (upper.z() - lower.z());
-      return {lower.x() + t * (upper.x() - lower.x()), lower.y() + t * (upper.y() - lower.y()),
-              open};
-    }
-    Vec3 lower, upper;
-  };
-
-  struct Run {
-    std::int32_t first = std::numeric_limits<std::int32_t>::max();
-    std::int32_t last = std::numeric_limits<std::int32_t>::min();
-  };
-
-  // Walks the outline of the triangle's slice in layer k.
-  void outline(const std::array<Edge, 3>& edges, std::int32_t k) {
-    // Each plane is crossed by two edges or none: those from below it to it or above.
-    std::array<Point, 3> bottom, top;
-    std::size_t bottoms = 0, tops = 0;
-    for (const Edge& edge : edges) {
-      if (edge.upper.z() < k || edge.lower.z() >= k + 1) continue;
-      const bool from_below = edge.lower.z() < k;
-      const bool to_above = edge.upper.z() >= k + 1;
-      const Point p = from_below ? edge.at(k, false) : Point{edge.lower.x(), edge.lower.y(), false};
-      const Point q =
-          to_above ? edge.at(k + 1, true) : Point{edge.upper.x(), edge.upper.y(), false};
-      if (from_below) bottom[bottoms++] = p;
-      if (to_above) top[tops++] = q;
-      touch_rows(p, p.y);
-      touch_rows(q, p.y);
-      cross_rows(p, q, false);
-    }
-    if (bottoms == 2) cross_rows(bottom[0], bottom[1], false);
-    if (tops == 2) cross_rows(top[0], top[1], true);
+    return true;
   }
 
-  // Gives an end point of a piece to its row; `from_y` is where the piece comes from.
-  void touch_rows(const Point& p, double from_y) {
-    const std::int32_t row = floor_index(p.y);
-    if (p.y == row) {
-      touch(p.open && from_y < p.y ? row - 1 : row, p.x, p.x - slack_, p.x + slack_, p.open);
-      return;
-    }
-    for (std::int32_t j = floor_index(p.y - slack_); j <= floor_index(p.y + slack_); ++j) {
-      touch(j, p.x, p.x - slack_, p.x + slack_, p.open);
-    }
-  }
-
-  // Gives the points where a piece meets the planes between rows to the rows that it comes from and
-  // goes to.
-  void cross_rows(Point p, Point q, bool open) {
-    if (q.y < p.y) std::swap(p, q);
-    std::int32_t j = floor_index(p.y);
-    if (j < p.y) ++j;
-    if (j > q.y || p.y == q.y) return;
-    const double left = std::min(p.x, q.x), right = std::max(p.x, q.x);
-    const double slack = slack_ * (1 + (right - left) / (q.y - p.y));
-    for (; j <= q.y; ++j) {
-      const double x = j == q.y ? q.x : p.x + (j - p.y) / (q.y - p.y) * (q.x - p.x);
-      const double low = std::max(x - slack, left - slack_);
-      const double high = std::min(x + slack, right + slack_);
-      if (j > p.y) touch(j - 1, x, low, high, true);
-      if (j < q.y) touch(j, x, low, high, open);
-    }
-  }
-
-  // Widens the run of row j by x, which is exact where it is whole and else surely between low and
-  // high.
-  void touch(std::int32_t j, double x, double low, double high, bool open) {
-    if (j < lo_.j || j > hi_.j) return;
-    std::int32_t first = floor_index(x), last = first;
-    if (x == first) {
-      if (open) --last;
-    } else {
-      first = floor_index(low);
-      last = floor_index(high);
-    }
-    Run& run = rows_[static_cast<std::size_t>(j - lo_.j)];
-    run.first = std::min(run.first, std::clamp(first, lo_.i, hi_.i));
-    run.last = std::max(run.last, std::clamp(last, lo_.i, hi_.i));
-    touched_first_ = std::min(touched_first_, j);
-    touched_last_ = std::max(touched_last_, j);
-  }
-
-  // Marks the runs in layer k and forgets them.
-  void mark(std::int32_t k) {
-    for (std::int32_t j = touched_first_; j <= touched_last_; ++j) {
-      Run& run = rows_[static_cast<std::size_t>(j - lo_.j)];
-      // All open and all on one whole x: a plane along the grid, which is in the voxel above it.
-      if (run.first <= hi_.i)
-        voxels_.insert_run(run.first, std::max(run.first, run.last) + 1, j, k);
-      run = {};
-    }
-    touched_first_ = std::numeric_limits<std::int32_t>::max();
-    touched_last_ = std::numeric_limits<std::int32_t>::min();
-  }
-
-  VoxelSet& voxels_;
-  double slack_;
-  VoxelIndex lo_, hi_;     // of the triangle, both inside
-  std::vector<Run> rows_;  // of the layer, from row lo_.j
-  std::int32_t touched_first_ = std::numeric_limits<std::int32_t>::max();
-  std::int32_t touched_last_ = std::numeric_limits<std::int32_t>::min();
+  SlabWriter slab_;
+  TriangleTracer tracer_;
+  RowAxes axes_;
+  VoxelBox box_;
+  double margin_;
+  std::int32_t k_begin_;
+  VoxelIndex lo_;  // of the triangle
 };
 
 VoxelSet exact_boundary(const SlabbedMesh& mesh) {
   VoxelSet voxels(mesh.box());
   tbb::parallel_for(mesh.slab_begin(), mesh.slab_end(), [&](std::int32_t slab) {
-    TriangleTracer tracer(voxels, mesh.reach());
-    for (const std::uint32_t t : mesh.triangles_in(slab)) {
-      tracer.trace(mesh.corners(t), slab * 8, slab * 8 + 8);
-    }
+    TriangleMarker marker(voxels, slab, mesh.reach());
+    for (const std::uint32_t t : mesh.triangles_in(slab)) marker.mark(mesh.corners(t));
   });
   return voxels;
 }
@@ -235,8 +163,10 @@ class Probe {
 // Grid lines through voxel centres, normal to the largest face of each triangle's bounding brick:
 // along the brick's shortest side (§4.1.2). Among equal sides the first of z, y, x.
 VoxelSet probe_boundary(const SlabbedMesh& mesh) {
-  VoxelSet voxels(mesh.box());
-  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+  const VoxelBox& box = mesh.box();
+  const std::array box_lo{box.lo.i, box.lo.j, box.lo.k}, box_hi{box.hi.i, box.hi.j, box.hi.k};
+  VoxelSet voxels(box);
+  for (const std::uint32_t t : mesh.triangles_listed()) {
     const std::array<Vec3, 3> corners = mesh.corners(t);
     const Vec3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
     const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
@@ -247,12 +177,15 @@ VoxelSet probe_boundary(const SlabbedMesh& mesh) {
     const int u = (a + 1) % 3, v = (a + 2) % 3;
     const Probe probe(corners, a);
     std::array<std::int32_t, 3> index;
-    for (index[v] = floor_index(low[v]); index[v] <= floor_index(high[v]); ++index[v]) {
-      for (index[u] = floor_index(low[u]); index[u] <= floor_index(high[u]); ++index[u]) {
+    const auto first = [&](int axis) { return std::max(floor_index(low[axis]), box_lo[axis]); };
+    const auto last = [&](int axis) { return std::min(floor_index(high[axis]), box_hi[axis] - 1); };
+    for (index[v] = first(v); index[v] <= last(v); ++index[v]) {
+      for (index[u] = first(u); index[u] <= last(u); ++index[u]) {
         const std::optional<double> met = probe.meet(index[u] + 0.5, index[v] + 0.5);
         if (!met) continue;
         index[a] = floor_index(std::clamp(*met, low[a], high[a]));
-        voxels.insert({index[0], index[1], index[2]});
+        const VoxelIndex voxel{index[0], index[1], index[2]};
+        if (box.contains(voxel)) voxels.insert(voxel);
       }
     }
   }
@@ -267,10 +200,13 @@ VoxelSet probe_boundary(const SlabbedMesh& mesh) {
 
 }  // namespace
 
+VoxelSet surface_voxels(const SlabbedMesh& mesh, BoundaryMethod method) {
+  return method == BoundaryMethod::exact ? exact_boundary(mesh) : probe_boundary(mesh);
+}
+
 VoxelSet boundary_voxels(const TriangleMesh& mesh, const Workspace& workspace,
                          BoundaryMethod method) {
-  const SlabbedMesh slabbed(mesh, workspace);
-  return method == BoundaryMethod::exact ? exact_boundary(slabbed) : probe_boundary(slabbed);
+  return surface_voxels(SlabbedMesh(mesh, workspace), method);
 }
 
 }  // namespace vicinity

@@ -122,6 +122,13 @@ BitBlock FreeRegions::free_voxels(const BlockIndex& b) const {
   return free;
 }
 
+// What lies beyond the box is not known: a block that reaches there is no part of a run.
+bool FreeRegions::is_free(const BlockIndex& b) const {
+  return boundary_.blocks().find(b) == nullptr && b.i * 64 >= box_.lo.i && b.j * 8 >= box_.lo.j &&
+         b.k * 8 >= box_.lo.k && b.i * 64 + 64 <= box_.hi.i && b.j * 8 + 8 <= box_.hi.j &&
+         b.k * 8 + 8 <= box_.hi.k;
+}
+
 // Links the nodes of two neighbouring block rows. face_of_x(slab, entry, n) is the side of part n
 // of a block that the other row sees.
 template <class FaceOfA, class FaceOfB, class Link>
@@ -156,7 +163,7 @@ FreeRegions::Slab FreeRegions::scan(std::int32_t k) const {
     for (std::int32_t i = lo_.i; i < lo_.i + size_.i; ++i) {
       const auto first_node = static_cast<std::uint32_t>(slab.voxels.size());
       const bool row_starts = slab.rows.back() == slab.entries.size();
-      if (boundary_.blocks().find({i, j, k}) == nullptr) {
+      if (is_free({i, j, k})) {
         if (!row_starts && slab.entries.back().first_face == no_face) {
           ++slab.entries.back().i_end;
           continue;
@@ -214,8 +221,8 @@ FreeRegions::Slab FreeRegions::scan(std::int32_t k) const {
   return slab;
 }
 
-FreeRegions::FreeRegions(const VoxelSet& boundary)
-    : boundary_(boundary), box_(boundary.box().grown(1)) {
+FreeRegions::FreeRegions(const VoxelSet& boundary) : boundary_(boundary), box_(boundary.box()) {
+  if (box_.empty()) return;
   lo_ = block_of(box_.lo);
   const BlockIndex last = block_of({box_.hi.i - 1, box_.hi.j - 1, box_.hi.k - 1});
   size_ = {last.i - lo_.i + 1, last.j - lo_.j + 1, last.k - lo_.k + 1};
@@ -251,7 +258,7 @@ FreeRegions::FreeRegions(const VoxelSet& boundary)
     }
   }
 
-  // Roots come before the nodes they stand for, and node 0 holds the corner of the grown box.
+  // Roots come before the nodes they stand for.
   region_.resize(parents.size());
   for (Slab& slab : slabs_) {
     for (std::size_t n = 0; n < slab.voxels.size(); ++n) {

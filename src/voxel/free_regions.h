@@ -18,12 +18,12 @@ BitBlock block_of_box(const BlockIndex& b, const VoxelBox& box);
 /// Splits the voxels of a block into its 6-connected parts, ordered by their first voxel.
 std::vector<BitBlock> connected_parts(const BitBlock& voxels);
 
-/// 6-connected regions of the voxels that are not in a boundary, within its box grown by one.
+/// 6-connected regions of the voxels that are not in a boundary, within its box.
 ///
 /// No surface passes between two voxels of a region, so the winding number of a closed mesh is the
-/// same at all of them. Region 0 is the one that reaches the outside.
+/// same at all of them.
 ///
-/// A node is a run of blocks along x without boundary, or one connected part of a block with some.
+/// A node is a run of blocks along x without boundary, or one connected part of any other block.
 /// Per node only what the neighbouring slab must see is kept; parts are found again when visited.
 class FreeRegions {
  public:
@@ -92,6 +92,7 @@ class FreeRegions {
     std::size_t offset = 0;  // of the slab's nodes among all
   };
 
+  bool is_free(const BlockIndex& b) const;
   Slab scan(std::int32_t k) const;
 
   template <class FaceOfA, class FaceOfB, class Link>

@@ -3,17 +3,22 @@
 
 #include "vicinity/voxel/inner.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "consistent_winding.h"
 #include "free_regions.h"
+#include "inside.h"
 #include "mesh_slice.h"
 #include "open_edges.h"
 #include "open_inner.h"
@@ -37,33 +42,50 @@ int closed_winding_number(const SlabbedMesh& mesh, const VoxelIndex& v) {
   return crossings;
 }
 
-// The same from the solid angles of all triangles: slower, but nothing slips through a crack.
-int cracked_winding_number(const SlabbedMesh& mesh, const VoxelIndex& v) {
-  const Vec3 centre(v.i + 0.5, v.j + 0.5, v.k + 0.5);
-  SolidAngleSum sum;
-  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
-    const std::array<Vec3, 3> corners = mesh.corners(t);
-    sum.add(corners[0] - centre, corners[1] - centre, corners[2] - centre);
-  }
-  return static_cast<int>(std::lround(sum.value() / (4 * std::numbers::pi)));
+// The same of many voxels, for a mesh that is not listed by slabs: one walk over the triangles,
+// each of which looks for the voxels in its layers.
+std::vector<int> closed_winding_numbers(const GridMesh& mesh,
+                                        const std::vector<VoxelIndex>& voxels) {
+  std::vector<std::size_t> by_layer(voxels.size());
+  std::iota(by_layer.begin(), by_layer.end(), std::size_t{0});
+  std::sort(by_layer.begin(), by_layer.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(voxels[a].k, a) < std::pair(voxels[b].k, b);
+  });
+  std::vector<int> numbers(voxels.size());
+  using Range = tbb::blocked_range<std::uint32_t>;
+  const auto triangles = static_cast<std::uint32_t>(mesh.triangle_count());
+  tbb::parallel_for(Range(0, triangles, 1 << 12), [&](const Range& range) {
+    for (std::uint32_t t = range.begin(); t < range.end(); ++t) {
+      const std::array<Vec3, 3> corners = mesh.corners(t);
+      const auto [low, high] = std::minmax({corners[0].z(), corners[1].z(), corners[2].z()});
+      auto at = std::partition_point(by_layer.begin(), by_layer.end(),
+                                     [&, low = low](auto v) { return voxels[v].k + 0.5 < low; });
+      for (; at != by_layer.end() && voxels[*at].k + 0.5 < high; ++at) {
+        const VoxelIndex& v = voxels[*at];
+        const std::optional<SliceSegment> segment = slice(corners, v.k + 0.5);
+        if (!segment) continue;
+        const std::optional<Crossing> crossing = cross(*segment, v.j + 0.5);
+        if (!crossing || crossing->x <= v.i + 0.5) continue;
+        std::atomic_ref(numbers[*at]).fetch_add(crossing->sign, std::memory_order_relaxed);
+      }
+    }
+  });
+  return numbers;
 }
 
 // Inner voxels where the winding number of a voxel is that of its whole region.
-VoxelSet closed_inner(const SlabbedMesh& mesh, const VoxelSet& boundary,
-                      int (*winding_number_at)(const SlabbedMesh&, const VoxelIndex&)) {
+template <class AreInner>
+VoxelSet closed_inner(const VoxelSet& boundary, AreInner&& are_inner) {
   VoxelSet inner(boundary.box());
   const FreeRegions regions(boundary);
-  std::vector<char> is_inner(regions.voxels().size());
-  tbb::parallel_for(std::size_t{1}, is_inner.size(), [&](std::size_t region) {
-    is_inner[region] = winding_number_at(mesh, regions.voxels()[region]) != 0;
-  });
+  const std::vector<char> is_inner = are_inner(regions.voxels());
   tbb::parallel_for(regions.slab_begin(), regions.slab_end(), [&](std::int32_t slab) {
     regions.visit_slab(
         slab, is_inner,
         [&](std::int32_t i_begin, std::int32_t i_end, std::int32_t j) {
-          BitBlock full;
-          full.words.fill(~std::uint64_t{0});
-          for (std::int32_t i = i_begin; i < i_end; ++i) inner.blocks().make({i, j, slab}) = full;
+          for (std::int32_t i = i_begin; i < i_end; ++i) {
+            inner.blocks().make({i, j, slab}).words.fill(~std::uint64_t{0});
+          }
         },
         [&](const BlockIndex& b, const BitBlock& part) {
           BitBlock& block = inner.blocks().make(b);
@@ -73,35 +95,20 @@ VoxelSet closed_inner(const SlabbedMesh& mesh, const VoxelSet& boundary,
   return inner;
 }
 
-VoxelSet winding_inner(const TriangleMesh& mesh, const VoxelSet& boundary,
-                       const Workspace& workspace) {
-  const SlabbedMesh as_given(mesh, workspace);
-  if (open_edges(as_given, 0).empty()) {
-    return closed_inner(as_given, boundary, closed_winding_number);
-  }
-  // Often a mesh is not open at all, but some of its triangles are wound the wrong way.
-  const TriangleMesh turned = consistently_wound(mesh);
-  const SlabbedMesh slabbed(turned, workspace);
-  if (open_edges(slabbed, 0).empty()) {
-    return closed_inner(slabbed, boundary, closed_winding_number);
-  }
-  const std::vector<OpenEdge> edges = open_edges(slabbed, crack_vox);
-  return edges.empty() ? closed_inner(slabbed, boundary, cracked_winding_number)
-                       : open_inner(slabbed, edges, boundary);
-}
-
 // Even-odd in each row: voxels whose centre is past an odd number of crossings (§4.1.3).
 VoxelSet raster_inner(const SlabbedMesh& mesh, const VoxelSet& boundary) {
   VoxelSet inner(boundary.box());
   const VoxelBox& box = boundary.box();
-  tbb::parallel_for(mesh.slab_begin(), mesh.slab_end(), [&](std::int32_t slab) {
+  if (box.empty()) return inner;
+  tbb::parallel_for(box.lo.k >> 3, ((box.hi.k - 1) >> 3) + 1, [&](std::int32_t slab) {
     std::vector<std::vector<double>> rows(static_cast<std::size_t>(box.hi.j - box.lo.j));
     for (std::int32_t k = slab * 8; k < slab * 8 + 8; ++k) {
       for (const std::uint32_t t : mesh.triangles_in(slab)) {
         const std::optional<SliceSegment> segment = slice(mesh.corners(t), k + 0.5);
         if (!segment) continue;
         const auto [low, high] = std::minmax(segment->from[1], segment->to[1]);
-        for (std::int32_t j = floor_index(low); j <= floor_index(high); ++j) {
+        for (std::int32_t j = std::max(floor_index(low), box.lo.j);
+             j <= std::min(floor_index(high), box.hi.j - 1); ++j) {
           const std::optional<Crossing> crossing = cross(*segment, j + 0.5);
           if (crossing) rows[static_cast<std::size_t>(j - box.lo.j)].push_back(crossing->x);
         }
@@ -128,18 +135,76 @@ VoxelSet raster_inner(const SlabbedMesh& mesh, const VoxelSet& boundary) {
 
 }  // namespace
 
-VoxelSet inner_voxels(const TriangleMesh& mesh, const VoxelSet& boundary,
-                      const Workspace& workspace, InnerMethod method) {
-  if (mesh.triangles.empty()) return VoxelSet(boundary.box());
-  switch (method) {
+Inside::Inside(const TriangleMesh& mesh, const GridMesh& as_given, const SlabbedMesh* slabs,
+               const Workspace& workspace, InnerMethod method)
+    : method_(method), mesh_(&as_given), slabs_(slabs) {
+  if (method != InnerMethod::winding || open_edges(as_given, 0).empty()) return;
+  // Often a mesh is not open at all, but some of its triangles are wound the wrong way.
+  turned_ = consistently_wound(mesh);
+  if (slabs_ != nullptr) {
+    auto slabbed = std::make_unique<const SlabbedMesh>(turned_, workspace);
+    slabs_ = slabbed.get();
+    turned_on_grid_ = std::move(slabbed);
+  } else {
+    turned_on_grid_ = std::make_unique<const GridMesh>(turned_, workspace);
+  }
+  mesh_ = turned_on_grid_.get();
+  if (open_edges(*mesh_, 0).empty()) return;
+  const std::vector<OpenEdge> edges = open_edges(*mesh_, crack_vox);
+  is_open_ = !edges.empty();
+  by_solid_angle_ = std::make_unique<const OpenInner>(*mesh_, edges);
+}
+
+Inside::~Inside() = default;
+
+std::vector<char> Inside::are_inner(const std::vector<VoxelIndex>& voxels) const {
+  std::vector<char> inner(voxels.size());
+  if (by_solid_angle_ == nullptr && slabs_ == nullptr) {
+    const std::vector<int> numbers = closed_winding_numbers(*mesh_, voxels);
+    for (std::size_t v = 0; v < voxels.size(); ++v) inner[v] = numbers[v] != 0;
+    return inner;
+  }
+  tbb::parallel_for(std::size_t{0}, voxels.size(), [&](std::size_t v) {
+    inner[v] = by_solid_angle_ ? by_solid_angle_->is_inner(voxels[v])
+                               : closed_winding_number(*slabs_, voxels[v]) != 0;
+  });
+  return inner;
+}
+
+VoxelSet Inside::inner(const VoxelSet& boundary) const {
+  switch (method_) {
     case InnerMethod::winding:
-      return winding_inner(mesh, boundary, workspace);
+      if (is_open_) return by_solid_angle_->inner(boundary);
+      return closed_inner(boundary,
+                          [this](const std::vector<VoxelIndex>& v) { return are_inner(v); });
     case InnerMethod::raster:
-      return raster_inner(SlabbedMesh(mesh, workspace), boundary);
+      return raster_inner(*slabs_, boundary);
     case InnerMethod::none:
       break;
   }
   return VoxelSet(boundary.box());
+}
+
+std::optional<bool> Inside::throughout(const VoxelBox& box) const {
+  switch (method_) {
+    case InnerMethod::winding:
+      return is_open_ ? by_solid_angle_->throughout(box) : are_inner({box.lo})[0] != 0;
+    case InnerMethod::raster:
+      return std::nullopt;
+    case InnerMethod::none:
+      break;
+  }
+  return false;
+}
+
+VoxelSet inner_voxels(const TriangleMesh& mesh, const VoxelSet& boundary,
+                      const Workspace& workspace, InnerMethod method) {
+  if (mesh.triangles.empty()) return VoxelSet(boundary.box());
+  if (method == InnerMethod::raster) {
+    const SlabbedMesh slabbed(mesh, workspace);
+    return Inside(mesh, slabbed, &slabbed, workspace, method).inner(boundary);
+  }
+  return Inside(mesh, GridMesh(mesh, workspace), nullptr, workspace, method).inner(boundary);
 }
 
 double winding_number(const TriangleMesh& mesh, const Vec3& p_W) {

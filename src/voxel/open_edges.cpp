@@ -3,8 +3,12 @@
 
 #include "open_edges.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <numeric>
@@ -14,45 +18,70 @@
 namespace vicinity {
 namespace {
 
+// Triangles or vertices that a thread takes at a time: some hundred microseconds of work.
+constexpr std::size_t triangles_a_task = 1 << 14;
+
 // Edge between two vertices, from the lower to the higher; surplus counts the way back as negative.
 struct Edge {
   std::uint32_t low, high;
   int surplus;
 };
 
-// Sums up equal edges and drops those that cancel. Linear but for the edges of one vertex: sorting
-// all edges at once takes several times longer than voxelising.
-std::vector<Edge> cancelled(const std::vector<Edge>& edges, std::size_t vertices) {
-  std::vector<std::size_t> starts(vertices + 1);
-  for (const Edge& edge : edges) ++starts[edge.low + 1];
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  std::vector<std::pair<std::uint32_t, int>> grouped(edges.size());
-  std::vector<std::size_t> next(starts.begin(), starts.end() - 1);
-  for (const Edge& edge : edges) grouped[next[edge.low]++] = {edge.high, edge.surplus};
-  std::vector<Edge> left;
-  for (std::size_t low = 0; low < vertices; ++low) {
-    const auto begin = grouped.begin() + static_cast<std::ptrdiff_t>(starts[low]);
-    const auto end = grouped.begin() + static_cast<std::ptrdiff_t>(starts[low + 1]);
-    std::sort(begin, end);
-    for (auto edge = begin; edge != end;) {
-      int surplus = 0;
-      const std::uint32_t high = edge->first;
-      for (; edge != end && edge->first == high; ++edge) surplus += edge->second;
-      if (surplus != 0) left.push_back({static_cast<std::uint32_t>(low), high, surplus});
+// Edges of `count` items summed up, without those that cancel, in order. For item n,
+// edges_of(n, edge) calls edge(low, high, surplus) for each of its edges. Linear but for the edges
+// of one vertex: sorting all edges at once takes several times longer than voxelising.
+template <class EdgesOf>
+std::vector<Edge> cancelled(std::size_t count, std::size_t vertices, EdgesOf&& edges_of) {
+  using Range = tbb::blocked_range<std::size_t>;
+  const auto visit = [&](auto&& edge) {
+    tbb::parallel_for(Range(0, count, triangles_a_task), [&](const Range& range) {
+      for (std::size_t n = range.begin(); n < range.end(); ++n) edges_of(n, edge);
+    });
+  };
+  // Grouped by their lower vertex; the order within a group does not matter.
+  std::vector<std::size_t> ends(vertices + 1);
+  visit([&](std::uint32_t low, std::uint32_t, int) {
+    std::atomic_ref(ends[low + 1]).fetch_add(1, std::memory_order_relaxed);
+  });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<std::pair<std::uint32_t, int>> grouped(ends.back());
+  visit([&](std::uint32_t low, std::uint32_t high, int surplus) {
+    // Each start moves up to where its group ends.
+    grouped[std::atomic_ref(ends[low]).fetch_add(1, std::memory_order_relaxed)] = {high, surplus};
+  });
+  const std::size_t pieces = vertices / triangles_a_task + 1;
+  std::vector<std::vector<Edge>> left(pieces);
+  tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+    for (std::size_t low = vertices * piece / pieces; low < vertices * (piece + 1) / pieces;
+         ++low) {
+      const auto begin =
+          grouped.begin() + static_cast<std::ptrdiff_t>(low == 0 ? 0 : ends[low - 1]);
+      const auto end = grouped.begin() + static_cast<std::ptrdiff_t>(ends[low]);
+      std::sort(begin, end);
+      for (auto edge = begin; edge != end;) {
+        int surplus = 0;
+        const std::uint32_t high = edge->first;
+        for (; edge != end && edge->first == high; ++edge) surplus += edge->second;
+        if (surplus != 0) left[piece].push_back({static_cast<std::uint32_t>(low), high, surplus});
+      }
     }
-  }
-  return left;
+  });
+  std::vector<Edge> all;
+  for (const std::vector<Edge>& some : left) all.insert(all.end(), some.begin(), some.end());
+  return all;
 }
 
-void add(std::vector<Edge>& edges, std::uint32_t from, std::uint32_t to, int surplus) {
-  if (from < to) edges.push_back({from, to, surplus});
-  if (to < from) edges.push_back({to, from, -surplus});
+// Calls edge(low, high, surplus), unless both ends are one.
+template <class Visit>
+void orderly(std::uint32_t from, std::uint32_t to, int surplus, Visit&& edge) {
+  if (from < to) edge(from, to, surplus);
+  if (to < from) edge(to, from, -surplus);
 }
 
 // For each vertex of the edges, one that stands for all vertices within a crack of it. Two points
 // closer than half a cell share a cell in at least one of eight grids shifted by half a cell.
 std::vector<std::uint32_t> joined_across_cracks(const std::vector<Edge>& edges,
-                                                const SlabbedMesh& mesh, double crack) {
+                                                const GridMesh& mesh, double crack) {
   std::vector<std::uint32_t> stands(mesh.vertices().size());
   std::iota(stands.begin(), stands.end(), std::uint32_t{0});
   const auto root = [&](std::uint32_t v) {
@@ -86,20 +115,19 @@ std::vector<std::uint32_t> joined_across_cracks(const std::vector<Edge>& edges,
 
 }  // namespace
 
-std::vector<OpenEdge> open_edges(const SlabbedMesh& mesh, double crack) {
-  std::vector<Edge> edges;
-  edges.reserve(3 * mesh.triangle_count());
-  for (const auto& [a, b, c] : mesh.triangles()) {
-    add(edges, a, b, 1);
-    add(edges, b, c, 1);
-    add(edges, c, a, 1);
-  }
-  edges = cancelled(edges, mesh.vertices().size());
+std::vector<OpenEdge> open_edges(const GridMesh& mesh, double crack) {
+  std::vector<Edge> edges =
+      cancelled(mesh.triangle_count(), mesh.vertices().size(), [&](std::size_t t, auto&& edge) {
+        const auto& [a, b, c] = mesh.triangles()[t];
+        orderly(a, b, 1, edge);
+        orderly(b, c, 1, edge);
+        orderly(c, a, 1, edge);
+      });
   if (crack > 0 && !edges.empty()) {
     const std::vector<std::uint32_t> stands = joined_across_cracks(edges, mesh, crack);
-    std::vector<Edge> wide;
-    for (const Edge& edge : edges) add(wide, stands[edge.low], stands[edge.high], edge.surplus);
-    edges = cancelled(wide, mesh.vertices().size());
+    edges = cancelled(edges.size(), mesh.vertices().size(), [&](std::size_t e, auto&& edge) {
+      orderly(stands[edges[e].low], stands[edges[e].high], edges[e].surplus, edge);
+    });
   }
   std::vector<OpenEdge> open;
   for (const Edge& edge : edges) {

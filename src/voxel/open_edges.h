@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "slabbed_mesh.h"
+#include "grid_mesh.h"
 
 namespace vicinity {
 
@@ -23,6 +23,6 @@ inline constexpr double crack_vox = 1e-3;
 /// Open edges of a mesh, ordered by coordinates. Edges whose ends are within `crack` voxels of each
 /// other cancel, as CAD exports leave them; with 0 only edges of the same vertices do, and none are
 /// left just where the winding number is whole everywhere off the surface.
-std::vector<OpenEdge> open_edges(const SlabbedMesh& mesh, double crack);
+std::vector<OpenEdge> open_edges(const GridMesh& mesh, double crack);
 
 }  // namespace vicinity

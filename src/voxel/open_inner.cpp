@@ -50,7 +50,7 @@ constexpr int few = 12;
 // Long open edges are cut, so that nodes stay small.
 constexpr double edge_piece_vox = 8;
 
-std::vector<MomentPiece> surface_pieces(const SlabbedMesh& mesh) {
+std::vector<MomentPiece> surface_pieces(const GridMesh& mesh) {
   std::vector<MomentPiece> pieces(mesh.triangle_count());
   for (std::uint32_t t = 0; t < pieces.size(); ++t) {
     // From the lowest corner on, so that a turned triangle gives the same piece to the last bit.
@@ -88,9 +88,11 @@ std::vector<MomentPiece> edge_pieces(const std::vector<OpenEdge>& edges) {
 
 Vec3 centre_of(const VoxelIndex& v) { return {v.i + 0.5, v.j + 0.5, v.k + 0.5}; }
 
+}  // namespace
+
 class OpenWinding {
  public:
-  OpenWinding(const SlabbedMesh& mesh, const std::vector<OpenEdge>& edges)
+  OpenWinding(const GridMesh& mesh, const std::vector<OpenEdge>& edges)
       : mesh_(mesh), surface_(surface_pieces(mesh)), edges_(edge_pieces(edges)) {}
 
   // Winding number about p; nodes act as a whole from `radii` of their radii.
@@ -152,9 +154,11 @@ class OpenWinding {
   }
 
  private:
-  const SlabbedMesh& mesh_;
+  const GridMesh& mesh_;
   MomentTree surface_, edges_;
 };
+
+namespace {
 
 // The box cut in two along every side that is not much shorter than the longest.
 std::vector<VoxelBox> quartered(const VoxelBox& box) {
@@ -281,10 +285,21 @@ void decide_run(const OpenWinding& winding, const BlockIndex& b, std::int32_t bl
 
 }  // namespace
 
-VoxelSet open_inner(const SlabbedMesh& mesh, const std::vector<OpenEdge>& edges,
-                    const VoxelSet& boundary) {
+OpenInner::OpenInner(const GridMesh& mesh, const std::vector<OpenEdge>& edges)
+    : winding_(std::make_unique<const OpenWinding>(mesh, edges)) {}
+
+OpenInner::~OpenInner() = default;
+
+std::optional<bool> OpenInner::throughout(const VoxelBox& box) const {
+  if (!winding_->is_clear(box)) return std::nullopt;
+  return winding_->decide(corners_of(box));
+}
+
+bool OpenInner::is_inner(const VoxelIndex& v) const { return winding_->is_inner(v); }
+
+VoxelSet OpenInner::inner(const VoxelSet& boundary) const {
+  const OpenWinding& winding = *winding_;
   VoxelSet inner(boundary.box());
-  const OpenWinding winding(mesh, edges);
   const BlockIndex lo = inner.blocks().lo(), size = inner.blocks().size();
   tbb::parallel_for(lo.k, lo.k + size.k, [&](std::int32_t k) {
     for (std::int32_t j = lo.j; j < lo.j + size.j; ++j) {

@@ -6,73 +6,86 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
-#include <string>
-
-#include "vicinity/geometry/error.h"
 
 namespace vicinity {
-namespace {
 
-// As far as indices may go: far enough from 2^31 that boxes can grow, and where a double still
-// resolves 2^-22 of a voxel.
-constexpr double farthest_index = 1 << 30;
-
-// As Workspace::covering() allows.
-constexpr std::int32_t most_per_axis = 1 << 20;
-
-}  // namespace
-
+// A counting sort by slab. Each piece of the mesh counts on its own, so that all pieces can then
+// write at once, each to its own places, in the order of the mesh.
 SlabbedMesh::SlabbedMesh(const TriangleMesh& mesh, const Workspace& workspace)
-    : triangles_(mesh.triangles), vertices_(mesh.vertices.size()) {
+    : GridMesh(mesh, workspace) {
   if (mesh.triangles.empty()) return;
-  tbb::parallel_for(std::size_t{0}, vertices_.size(),
-                    [&](std::size_t v) { vertices_[v] = workspace.to_grid(mesh.vertices[v]); });
-
-  Box bounds;
-  for (const auto& triangle : triangles_) {
-    for (const std::uint32_t corner : triangle) {
-      if (!vertices_[corner].allFinite()) {
-        throw Error({.where = "mesh",
-                     .what = "a vertex is not a finite number of voxels from the origin",
-                     .expected = "finite coordinates"});
-      }
-      bounds.extend(vertices_[corner]);
+  const std::size_t triangles_per_piece = 1 << 14;
+  const auto slabs = static_cast<std::size_t>(slab_end() - slab_begin());
+  // No more counters than triangles, however many slabs there are.
+  const std::size_t pieces =
+      std::clamp<std::size_t>(triangle_count() / std::max(slabs, triangles_per_piece), 1, 64);
+  const auto first_of = [&](std::size_t piece) { return triangle_count() * piece / pieces; };
+  const auto visit = [&](std::size_t piece, auto&& entry) {
+    for (std::size_t t = first_of(piece); t < first_of(piece + 1); ++t) {
+      const auto& [a, b, c] = triangles()[t];
+      const auto [low, high] =
+          std::minmax({vertices()[a].z(), vertices()[b].z(), vertices()[c].z()});
+      const auto last = static_cast<std::size_t>((floor_index(high) >> 3) - slab_begin());
+      auto s = static_cast<std::size_t>((floor_index(low) >> 3) - slab_begin());
+      for (; s <= last; ++s) entry(s, static_cast<std::uint32_t>(t));
     }
-  }
-  reach_ = std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
-  const double longest = bounds.sizes().maxCoeff();
-  if (reach_ > farthest_index || longest > most_per_axis - 1) {
-    throw Error({.where = "mesh",
-                 .what = "too large for this voxel size",
-                 .found = std::to_string(longest) + " voxels along its longest side, reaching " +
-                          std::to_string(reach_) + " voxels from the origin",
-                 .expected = "at most 1048576 voxels along each axis",
-                 .hint = "larger voxels, or check the unit of the mesh"});
-  }
-  box_ = {
-      {floor_index(bounds.min().x()), floor_index(bounds.min().y()), floor_index(bounds.min().z())},
-      {floor_index(bounds.max().x()) + 1, floor_index(bounds.max().y()) + 1,
-       floor_index(bounds.max().z()) + 1}};
-
-  const auto slabs_of = [&](const std::array<std::uint32_t, 3>& triangle) {
-    const auto [low, high] = std::minmax(
-        {vertices_[triangle[0]].z(), vertices_[triangle[1]].z(), vertices_[triangle[2]].z()});
-    return std::array{static_cast<std::size_t>((floor_index(low) >> 3) - slab_begin()),
-                      static_cast<std::size_t>((floor_index(high) >> 3) - slab_begin())};
   };
-  starts_.resize(static_cast<std::size_t>(slab_end() - slab_begin()) + 1);
-  for (const auto& triangle : triangles_) {
-    const auto [first, last] = slabs_of(triangle);
-    for (std::size_t s = first; s <= last; ++s) ++starts_[s + 1];
+  std::vector<std::vector<std::size_t>> next(pieces);
+  tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+    next[piece].resize(slabs);
+    visit(piece, [&](std::size_t slab, std::uint32_t) { ++next[piece][slab]; });
+  });
+  starts_.resize(slabs + 1);
+  for (std::size_t slab = 0; slab < slabs; ++slab) {
+    std::size_t at = starts_[slab];
+    for (std::vector<std::size_t>& counted : next) {
+      const std::size_t count = counted[slab];
+      counted[slab] = at;
+      at += count;
+    }
+    starts_[slab + 1] = at;
+  }
+  listed_.resize(starts_.back());
+  tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+    visit(piece, [&](std::size_t slab, std::uint32_t t) { listed_[next[piece][slab]++] = t; });
+  });
+}
+
+SlabbedMesh::SlabbedMesh(const GridMesh& whole, std::span<const std::uint32_t> triangles,
+                         const VoxelBox& within)
+    : GridMesh(whole) {
+  cut(within);
+  if (box().empty()) return;
+  const std::int32_t slabs = slab_end() - slab_begin();
+  const auto slabs_of = [&](std::uint32_t t) {
+    const std::array<Vec3, 3> corners = this->corners(t);
+    const auto [low, high] = std::minmax({corners[0].z(), corners[1].z(), corners[2].z()});
+    const std::int32_t first = (floor_index(low) >> 3) - slab_begin();
+    const std::int32_t end = (floor_index(high) >> 3) - slab_begin() + 1;
+    return std::array{static_cast<std::size_t>(std::max(first, 0)),
+                      static_cast<std::size_t>(std::clamp(end, 0, slabs))};
+  };
+  starts_.resize(static_cast<std::size_t>(slabs) + 1);
+  for (const std::uint32_t t : triangles) {
+    const auto [first, end] = slabs_of(t);
+    for (std::size_t s = first; s < end; ++s) ++starts_[s + 1];
   }
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
   listed_.resize(starts_.back());
   std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-    const auto [first, last] = slabs_of(triangles_[t]);
-    for (std::size_t s = first; s <= last; ++s) listed_[next[s]++] = t;
+  for (const std::uint32_t t : triangles) {
+    const auto [first, end] = slabs_of(t);
+    for (std::size_t s = first; s < end; ++s) listed_[next[s]++] = t;
   }
+}
+
+std::vector<std::uint32_t> SlabbedMesh::triangles_listed() const {
+  std::vector<std::uint32_t> triangles = listed_;
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  return triangles;
 }
 
 }  // namespace vicinity

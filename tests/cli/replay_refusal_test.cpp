@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-struct Refusal {
+struct ReplayRefusal {
   const char* claim;
   const char* log;  // text of the joint log
   std::vector<std::string> more;
@@ -26,7 +26,7 @@ struct Refusal {
 
 constexpr const char* good = "t,turn,bend,slide\n0,0,0,0\n0.01,0.01,0,0\n0.02,0.02,0,0\n";
 
-const Refusal refusals[] = {
+const ReplayRefusal replay_refusals[] = {
     {"NanCell", "t,turn,bend,slide\n0,0,0,0\n0.01,nan,0,0\n", {}, "log.csv:3: column 'turn'"},
     {"InfiniteCell", "t,turn,bend,slide\n0,0,0,0\n0.01,0,inf,0\n", {}, "log.csv:3"},
     {"EmptyCell", "t,turn,bend,slide\n0,0,0,0\n\n0.01,0,,0\n", {}, "log.csv:4: column 'bend'"},
@@ -85,7 +85,7 @@ const Refusal refusals[] = {
     {"SceneWithoutRobot", good, {"--scene", "scene.yaml"}, "no robot"},
 };
 
-class ReplayRefused : public testing::TestWithParam<Refusal> {
+class ReplayRefused : public testing::TestWithParam<ReplayRefusal> {
  protected:
   static void SetUpTestSuite() {
     folder_ = new Folder;
@@ -124,7 +124,7 @@ TEST_P(ReplayRefused, WithOneSentence) {
   expect_refused(*folder_, arguments, GetParam().sentence_says);
 }
 
-INSTANTIATE_TEST_SUITE_P(, ReplayRefused, testing::ValuesIn(refusals),
+INSTANTIATE_TEST_SUITE_P(, ReplayRefused, testing::ValuesIn(replay_refusals),
                          [](const auto& which) { return which.param.claim; });
 
 TEST_F(ReplayRefused, WithoutAFieldARobotOrALog) {

@@ -58,7 +58,7 @@ TEST_F(Replay, HasTheDocumentedColumns) {
   const std::string text = text_of(*folder_ / "felt.csv");
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "t,tau_turn,tau_bend,tau_slide,fx,fy,fz,mx,my,mz,master_force,status,reason_link,"
-            "reason_object,reason_rank,reason_distance_mm");
+            "reason_object,reason_rank,reason_distance_mm,q_turn,q_bend,q_slide");
 }
 
 TEST_F(Replay, JsonLinesSayWhatTheCsvSays) {

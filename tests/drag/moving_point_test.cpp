@@ -11,6 +11,7 @@
 #include <random>
 
 #include "drag/fields.h"
+#include "drag/presets.h"
 #include "no_allocation.h"
 #include "vicinity/mesh/primitive.h"
 
@@ -18,7 +19,6 @@ namespace vicinity {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::array presets{"none", "sustained", "fading", "short", "rising"};
 
 VoxelRecord rank(int n) { return {VoxelKind::neighbour, static_cast<std::uint8_t>(n), 0}; }
 

@@ -12,13 +12,12 @@
 #include <random>
 
 #include "drag/fields.h"
+#include "drag/presets.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/mesh/primitive.h"
 
 namespace vicinity {
 namespace {
-
-constexpr std::array presets{"none", "sustained", "fading", "short", "rising"};
 
 // Ranks 6, 5, .. 1 in slabs of 4 m from x = 10 on, a wall from x = 34.
 ViscosityField slabs() {

@@ -12,13 +12,12 @@
 #include <random>
 #include <vector>
 
+#include "drag/presets.h"
 #include "no_allocation.h"
 #include "vicinity/geometry/error.h"
 
 namespace vicinity {
 namespace {
-
-constexpr std::array presets{"none", "sustained", "fading", "short", "rising"};
 
 // Eq. (6-7) as they stand in the paper, on a list that only grows at its head.
 class PlainMemory {

@@ -7,7 +7,9 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
@@ -63,13 +65,11 @@ int rank_of(const RankedNeighbours& layers, const VoxelIndex& v) {
   return rank;
 }
 
-/// Rank and stored distance of every voxel of the layers' box, and around it, against the oracle.
-void expect_true_distances(const Voxelised& object, int m, int q) {
-  const DistanceLayers layers =
-      distance_layers(object.mesh, object.boundary, object.inner, object.workspace, m, q);
+/// Rank and stored distance of every voxel of a box against the oracle.
+void expect_true_distances(const DistanceLayers& layers, const Voxelised& object, int m, int q,
+                           const VoxelBox& box) {
   ASSERT_EQ(layers.neighbours.ranks.size(), static_cast<std::size_t>(q));
   const TriangleTree tree(object.mesh);
-  const VoxelBox box = object.boundary.box().grown(q * m + 3);
   int complaints = 0;
   for (int k = box.lo.k; k < box.hi.k && complaints < 10; ++k) {
     for (int j = box.lo.j; j < box.hi.j; ++j) {
@@ -103,6 +103,13 @@ void expect_true_distances(const Voxelised& object, int m, int q) {
       }
     }
   }
+}
+
+/// The same of the layers' box, and around it.
+void expect_true_distances(const Voxelised& object, int m, int q) {
+  expect_true_distances(
+      distance_layers(object.mesh, object.boundary, object.inner, object.workspace, m, q), object,
+      m, q, object.boundary.box().grown(q * m + 3));
 }
 
 TEST(DistanceOracle, TreeFindsWhatAskingEveryTriangleFinds) {
@@ -175,6 +182,121 @@ TEST(DistanceLayers, AreTrueAroundSoupWithSliversAndDegenerateTriangles) {
     std::mt19937 random(seed);
     expect_true_distances(voxelise(soup(random), 1.0, InnerMethod::none), 3, 2);
     if (testing::Test::HasFailure()) break;
+  }
+}
+
+TEST(DistanceLayers, AreTrueAroundARoughScanWithTrianglesSmallerThanVoxels) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> off(-0.4, 0.4);
+    TriangleMesh scan = primitive::sphere(6, 64);
+    for (Vec3& p : scan.vertices) p += Vec3(off(random), off(random), off(random));
+    expect_true_distances(voxelise(std::move(scan), 1.0, InnerMethod::none), 3, 3);
+  }
+}
+
+TEST(DistanceLayers, AreTrueFarAlongTrianglesOfThousandsOfVoxels) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> near(-12, 12), far(-4000, 4000);
+    Voxelised object;
+    object.workspace.voxel_size = 1;
+    for (int n = 0; n < 4; ++n) {
+      // Through the box's middle, from one end far away to the other; some are slivers.
+      const Vec3 p(near(random), near(random), near(random)),
+          d(far(random), far(random), far(random));
+      const Vec3 wide = n == 0 ? 0.01 * Vec3(near(random), near(random), near(random))
+                               : Vec3(far(random), far(random), far(random));
+      const auto first = static_cast<std::uint32_t>(object.mesh.vertices.size());
+      object.mesh.vertices.insert(object.mesh.vertices.end(), {p - d, p + d, p + d + wide});
+      object.mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    const VoxelBox box{{-13, -9, -11}, {10, 12, 9}};
+    const SurfaceDistances distances(object.mesh, object.workspace, 3, 3);
+    expect_true_distances(distances.layers(VoxelSet(), VoxelSet(), box), object, 3, 3, box);
+    if (testing::Test::HasFailure()) break;
+  }
+}
+
+TEST(DistanceLayers, AreTrueBeyondTheTipsOfNeedles) {
+  // Centres lie in line with the needle: a little in front of its sides is far from its tip.
+  const VoxelBox box{{0, 0, 0}, {20, 16, 16}};
+  for (const double half_width : {1e-5, 1e-4, 1e-3, 1e-2, 1e-1}) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      SCOPED_TRACE(std::to_string(half_width) + " along axis " + std::to_string(axis));
+      Voxelised object;
+      object.workspace.voxel_size = 1;
+      for (const double off : {-half_width, half_width}) {
+        Vec3 p(8.5, 8.5, 8.5);
+        p[axis] = 2.25;
+        p[(axis + 1) % 3] += off;
+        object.mesh.vertices.push_back(p);
+      }
+      Vec3 tip(8.5, 8.5, 8.5);
+      tip[axis] = 9.3;
+      object.mesh.vertices.push_back(tip);
+      object.mesh.triangles.push_back({0, 1, 2});
+      const SurfaceDistances distances(object.mesh, object.workspace, 2, 4);
+      expect_true_distances(distances.layers(VoxelSet(), VoxelSet(), box), object, 2, 4, box);
+    }
+  }
+}
+
+TEST(DistanceLayers, RoundDownDistancesThatAreWholeSteps) {
+  // Everything is a whole number of steps, so that whole numbers tell what is right to the last
+  // bit.
+  const std::int64_t per_voxel = 128;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<std::int64_t> low(20 * per_voxel, 22 * per_voxel),
+        size(1, 9 * per_voxel);
+    std::array<std::int64_t, 3> lo, hi;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lo[axis] = low(random);
+      hi[axis] = lo[axis] + size(random);
+      // Planes through centres, and a whole number of voxels away from them, are common.
+      if (seed % 2 == 0) lo[axis] -= lo[axis] % 64, hi[axis] += 64 - hi[axis] % 64;
+    }
+    const auto in_voxels = [per_voxel](const std::array<std::int64_t, 3>& steps) -> Vec3 {
+      return Vec3(static_cast<double>(steps[0]), static_cast<double>(steps[1]),
+                  static_cast<double>(steps[2])) /
+             static_cast<double>(per_voxel);
+    };
+    const Vec3 from = in_voxels(lo), to = in_voxels(hi);
+    Voxelised object;
+    object.workspace.voxel_size = 1;
+    object.mesh = primitive::box(to - from);
+    const Vec3 move = from - object.mesh.bounds().min();
+    for (Vec3& p : object.mesh.vertices) p += move;
+    ASSERT_EQ(object.mesh.bounds().max(), to);
+    const int m = 2, q = 4;
+    const SurfaceDistances distances(object.mesh, object.workspace, m, q);
+    const VoxelBox box{{8, 8, 8}, {44, 44, 44}};
+    const DistanceLayers layers = distances.layers(VoxelSet(), VoxelSet(), box);
+    int wrong = 0;
+    for (int k = box.lo.k; k < box.hi.k; ++k) {
+      for (int j = box.lo.j; j < box.hi.j; ++j) {
+        for (int i = box.lo.i; i < box.hi.i; ++i) {
+          std::int64_t squared = 0, inside = std::numeric_limits<std::int64_t>::max();
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::int64_t p = (std::array{i, j, k}[axis]) * per_voxel + per_voxel / 2;
+            const std::int64_t away = std::max({lo[axis] - p, p - hi[axis], std::int64_t{0}});
+            squared += away * away;
+            inside = std::min({inside, p - lo[axis], hi[axis] - p});
+          }
+          if (squared == 0) squared = inside * inside;
+          auto steps = static_cast<std::int64_t>(std::sqrt(static_cast<double>(squared)));
+          while (steps * steps > squared) --steps;
+          while ((steps + 1) * (steps + 1) <= squared) ++steps;
+          if (rank_of(layers.neighbours, {i, j, k}) == 0) continue;
+          if (stored_steps(layers, {i, j, k}) != steps) ++wrong;
+        }
+      }
+    }
+    EXPECT_EQ(wrong, 0);
   }
 }
 
@@ -297,14 +419,60 @@ DistanceLayers layers_of(const Voxelised& object) {
   return distance_layers(object.mesh, object.boundary, object.inner, object.workspace, 4, 4);
 }
 
+/// Whether two results have the same blocks, to the last bit, skin and free voxels included.
+bool identical(const DistanceLayers& a, const DistanceLayers& b) {
+  bool same = a.distances.block_count() == b.distances.block_count();
+  a.distances.for_each([&](const BlockIndex& index, const DistanceBlock& block) {
+    const DistanceBlock* other = b.distances.find(index);
+    same = same && other != nullptr && block.steps == other->steps;
+  });
+  return same && same_layers(a, b, {0, 0, 0});
+}
+
 TEST(DistanceLayers, DoNotDependOnTheNumberOfThreads) {
-  const Voxelised object = voxelise(primitive::torus(0.3, 0.1, 32), 0.01, InnerMethod::winding);
-  std::vector<DistanceLayers> layers;
-  for (const std::size_t threads : {1u, 2u}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    layers.push_back(layers_of(object));
+  std::vector<Voxelised> objects;
+  objects.push_back(voxelise(primitive::torus(0.3, 0.1, 32), 0.01, InnerMethod::winding));
+  for (unsigned seed = 50; seed < 55; ++seed) {
+    std::mt19937 random(seed);
+    objects.push_back(voxelise(soup(random), 0.5, InnerMethod::none));
   }
-  EXPECT_TRUE(same_layers(layers[0], layers[1], {0, 0, 0}));
+  for (const Voxelised& object : objects) {
+    std::vector<DistanceLayers> layers;
+    for (const std::size_t threads : {1u, 2u}) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      layers.push_back(layers_of(object));
+    }
+    EXPECT_TRUE(identical(layers[0], layers[1]));
+  }
+}
+
+TEST(DistanceLayers, InPartsAreWhatTheyAreAsAWhole) {
+  const Voxelised object = voxelise(primitive::torus(0.3, 0.1, 32), 0.01, InnerMethod::winding);
+  const DistanceLayers whole = layers_of(object);
+  const SurfaceDistances distances(object.mesh, object.workspace, 4, 4);
+  const VoxelBox box = distances.box(object.boundary.box());
+  ASSERT_EQ(box, whole.distances.box());
+  std::size_t ranked = 0, wrong = 0;
+  for (std::int32_t k = box.lo.k; k < box.hi.k; k += 13) {  // across slabs
+    VoxelBox part = box;
+    part.lo.k = k;
+    part.hi.k = std::min(k + 13, box.hi.k);
+    const DistanceLayers layers = distances.layers(object.boundary, object.inner, part);
+    for (std::size_t n = 0; n < 4; ++n) {
+      layers.neighbours.ranks[n].for_each([&](const VoxelIndex& v) {
+        ++ranked;
+        wrong += !part.contains(v) || !whole.neighbours.ranks[n].contains(v) ||
+                 stored_steps(layers, v) != stored_steps(whole, v);
+      });
+    }
+    object.boundary.for_each([&](const VoxelIndex& v) {
+      if (part.contains(v)) wrong += stored_steps(layers, v) != stored_steps(whole, v);
+    });
+  }
+  std::size_t ranked_as_a_whole = 0;
+  for (const VoxelSet& rank : whole.neighbours.ranks) ranked_as_a_whole += rank.count();
+  EXPECT_EQ(ranked, ranked_as_a_whole);
+  EXPECT_EQ(wrong, 0u);
 }
 
 TEST(DistanceLayers, DoNotDependOnTheOrderOfTrianglesOrVertices) {

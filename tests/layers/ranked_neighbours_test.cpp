@@ -132,6 +132,32 @@ TEST(RankedNeighbours, AreTheTripleLoopsOnRandomObjects) {
   }
 }
 
+// Long objects are ranked in several tiles; each tile must know enough of its neighbours.
+TEST(RankedNeighbours, AreTheTripleLoopsAcrossTiles) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    const auto pick = [&](int lo, int hi) { return std::uniform_int_distribution(lo, hi)(random); };
+    const VoxelIndex lo{pick(-90, 0), pick(-90, 0), pick(-90, 0)};
+    VoxelIndex size{6, 6, 6};
+    (seed % 3 == 0 ? size.i : seed % 3 == 1 ? size.j : size.k) = 560;
+    const VoxelBox box{lo, {lo.i + size.i, lo.j + size.j, lo.k + size.k}};
+    RandomObject object{VoxelSet(box), VoxelSet(box)};
+    for (int n = 0; n < 400; ++n) {
+      const VoxelIndex v{pick(box.lo.i, box.hi.i - 1), pick(box.lo.j, box.hi.j - 1),
+                         pick(box.lo.k, box.hi.k - 1)};
+      if (object.boundary.contains(v) || object.inner.contains(v)) continue;
+      (n % 3 == 0 ? object.boundary : object.inner).insert(v);
+    }
+    const int m = pick(2, 8), q = 20 / m;
+    const LayerShape shape = pick(0, 1) == 0 ? LayerShape::cube : LayerShape::sphere;
+    expect_as_the_triple_loop(
+        ranked_neighbours(object.boundary, object.inner, ShapingElement(shape, m), q),
+        object.boundary, object.inner, shape, m, q);
+    if (HasFailure()) break;
+  }
+}
+
 /// Whether two layers hold the same voxels, the second moved by `shift`.
 bool same_layers(const RankedNeighbours& a, const RankedNeighbours& b, const VoxelIndex& shift) {
   if (a.ranks.size() != b.ranks.size()) return false;

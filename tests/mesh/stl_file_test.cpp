@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -68,7 +69,7 @@ std::vector<Corners> corners_of(const TriangleMesh& mesh) {
 const Corners one_triangle = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
 
 /// What read_stl() says of a file with these bytes; empty where it reads it.
-std::string refusal(const std::filesystem::path& path) {
+std::string stl_refusal(const std::filesystem::path& path) {
   try {
     read_stl(path);
     return "";
@@ -150,6 +151,51 @@ TEST(StlFile, WeldsAsAMapOfExactCoordinatesWouldInOrderOfFirstAppearance) {
   }
 }
 
+TEST(StlFile, AnAsciiFileReadInPartsIsTheSameMeshAsItsTrianglesInBinary) {
+  const ScratchFolder folder;
+  const auto triangles = corners_of(primitive::torus(0.7, 0.3, 200));
+  const std::string text = ascii_stl(triangles);
+  ASSERT_GT(text.size(), 4u << 20);
+  const TriangleMesh binary = read_stl(folder.file("b.stl", binary_stl(triangles)));
+  // One solid; two, the second of which begins somewhere in the middle; one with names to trip
+  // over.
+  std::string two = text;
+  two.insert(two.find("\nfacet", two.size() / 2) + 1, "endsolid a\nsolid facet\n");
+  const std::string named = "solid a\n" + text.substr(text.find('\n') + 1);
+  std::string carriage_returns = text;
+  std::replace(carriage_returns.begin(), carriage_returns.end(), '\n', '\r');
+  for (const std::string& bytes : {text, two, named, carriage_returns}) {
+    const TriangleMesh ascii = read_stl(folder.file("a.stl", bytes));
+    ASSERT_EQ(ascii.triangles, binary.triangles);
+    ASSERT_EQ(ascii.vertices.size(), binary.vertices.size());
+    for (std::size_t i = 0; i < ascii.vertices.size(); ++i) {
+      ASSERT_EQ(ascii.vertices[i].cast<float>(), binary.vertices[i].cast<float>());
+    }
+  }
+}
+
+TEST(StlFile, ARefusalNamesTheLineHoweverFarDownALargeFileItIs) {
+  const ScratchFolder folder;
+  const std::string text = ascii_stl(corners_of(primitive::torus(0.7, 0.3, 200)));
+  for (const double where : {0.1, 0.5, 0.9}) {
+    std::string bad = text;
+    const std::size_t at =
+        bad.find("vertex", static_cast<std::size_t>(where * static_cast<double>(text.size())));
+    bad.replace(at, 6, "vortex");
+    const auto line =
+        1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    EXPECT_THAT(refusal(folder.file("bad.stl", bad)),
+                ::testing::AllOf(HasSubstr(fmt::format("line {}", line)),
+                                 HasSubstr("found \"vortex\""), HasSubstr("expected \"vertex\"")));
+    EXPECT_THAT(refusal(folder.file("cut.stl", text.substr(0, at))),
+                ::testing::AllOf(HasSubstr(fmt::format("line {}", line)), HasSubstr("cut short")));
+  }
+  std::string no_end = text.substr(0, text.rfind("endsolid"));
+  EXPECT_THAT(refusal(folder.file("cut.stl", no_end)), HasSubstr("the file is cut short"));
+  EXPECT_THAT(refusal(folder.file("blank.stl", "solid" + std::string(3u << 20, '\n'))),
+              HasSubstr("cut short"));
+}
+
 TEST(StlFile, CountsTheNormalsThatAreZero) {
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / "vicinity_normals.stl";
@@ -182,7 +228,8 @@ TEST(StlFile, TheWordSolidDoesNotMakeAFileAscii) {
   bytes.replace(0, header.size(), header);
   EXPECT_EQ(read_stl(folder.file("a.stl", bytes)).triangles.size(), 1u);
   bytes.pop_back();
-  EXPECT_THAT(refusal(folder.file("b.stl", bytes)), HasSubstr("cut short or its triangle count"));
+  EXPECT_THAT(stl_refusal(folder.file("b.stl", bytes)),
+              HasSubstr("cut short or its triangle count"));
 }
 
 TEST(StlFile, AsciiMayBeWrittenAsPeopleWriteIt) {
@@ -217,7 +264,7 @@ TEST(StlFile, ARefusalNamesFilePlaceFoundAndExpected) {
   const auto with = [&](const std::string& old_words, const std::string& new_words) {
     std::string text = good;
     text.replace(text.find(old_words), old_words.size(), new_words);
-    return refusal(folder.file("bad.stl", text));
+    return stl_refusal(folder.file("bad.stl", text));
   };
   EXPECT_THAT(with("vertex 1 0 0", "vertex 1,5 0 0"),
               ::testing::AllOf(HasSubstr("bad.stl, line 5"), HasSubstr("found \"1,5\""),
@@ -232,12 +279,12 @@ TEST(StlFile, ARefusalNamesFilePlaceFoundAndExpected) {
   EXPECT_THAT(with("endsolid part", "\x01\x02"), HasSubstr("found \"?\?\""));
   EXPECT_THAT(with("endsolid part\n", ""), HasSubstr("the file is cut short"));
   EXPECT_THAT(with("solid part", "part"), HasSubstr("starts with \"solid\""));
-  EXPECT_THAT(refusal(folder.file("bad.stl", "")), HasSubstr("found 0 bytes"));
-  EXPECT_THAT(refusal(folder.file("bad.stl", binary_stl({}))), HasSubstr("holds no triangle"));
-  EXPECT_THAT(refusal(folder.file("bad.stl", binary_stl({one_triangle}) + "more")),
+  EXPECT_THAT(stl_refusal(folder.file("bad.stl", "")), HasSubstr("found 0 bytes"));
+  EXPECT_THAT(stl_refusal(folder.file("bad.stl", binary_stl({}))), HasSubstr("holds no triangle"));
+  EXPECT_THAT(stl_refusal(folder.file("bad.stl", binary_stl({one_triangle}) + "more")),
               HasSubstr("bytes behind the last triangle"));
-  EXPECT_THAT(refusal(folder.path()), HasSubstr("a folder"));
-  EXPECT_THAT(refusal(folder.path() / "none.stl"), HasSubstr("there is no such file"));
+  EXPECT_THAT(stl_refusal(folder.path()), HasSubstr("a folder"));
+  EXPECT_THAT(stl_refusal(folder.path() / "none.stl"), HasSubstr("there is no such file"));
 }
 
 TEST(StlFile, ACoordinateThatIsNoPlaceIsRefusedWithItsTriangle) {
@@ -247,7 +294,7 @@ TEST(StlFile, ACoordinateThatIsNoPlaceIsRefusedWithItsTriangle) {
     for (std::size_t k = 0; k < 9; ++k) {
       std::vector<Corners> triangles(7, one_triangle);
       triangles[4][k / 3][k % 3] = bad;
-      EXPECT_THAT(refusal(folder.file("bad.stl", binary_stl(triangles))),
+      EXPECT_THAT(stl_refusal(folder.file("bad.stl", binary_stl(triangles))),
                   HasSubstr("bad.stl, triangle 5 of 7"));
     }
   }
@@ -260,7 +307,7 @@ TEST(StlFile, ALyingTriangleCountTakesNoMemory) {
     std::memcpy(&bytes[80], &lie, sizeof lie);
     const auto path = folder.file("lie.stl", bytes);
     const AllocationMeter meter;
-    EXPECT_THAT(refusal(path), HasSubstr(fmt::format("a count of {} triangles", lie)));
+    EXPECT_THAT(stl_refusal(path), HasSubstr(fmt::format("a count of {} triangles", lie)));
     EXPECT_LT(meter.peak(), 64u << 10);
   }
 }
@@ -294,10 +341,11 @@ TEST(StlFile, ACutFileIsAlwaysRefused) {
       return std::uniform_int_distribution<std::size_t>(0, end - 1)(random);
     };
     const std::size_t at = cut(binary.size());
-    EXPECT_NE(refusal(folder.file("b.stl", binary.substr(0, at))), "") << "binary cut at " << at;
+    EXPECT_NE(stl_refusal(folder.file("b.stl", binary.substr(0, at))), "")
+        << "binary cut at " << at;
     // Behind the last keyword only the name is cut, which is no loss.
     const std::size_t behind = cut(ascii.rfind("endsolid") + 8);
-    EXPECT_NE(refusal(folder.file("a.stl", ascii.substr(0, behind))), "")
+    EXPECT_NE(stl_refusal(folder.file("a.stl", ascii.substr(0, behind))), "")
         << "ASCII cut at " << behind;
   }
 }

@@ -9,15 +9,11 @@
 #include <limits>
 #include <random>
 
+#include "teleop/one_axis.h"
 #include "vicinity/geometry/error.h"
 
 namespace vicinity {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-Eigen::VectorXd one(double value) { return Eigen::VectorXd::Constant(1, value); }
-Eigen::MatrixXd scalar(double value) { return Eigen::MatrixXd::Constant(1, 1, value); }
 
 TEST(EnergySum, KeepsTermsThatPlainSummationLoses) {
   EnergySum sum;

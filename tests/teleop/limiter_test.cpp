@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vicinity/teleop/limiter.h"
+#include "teleop/one_axis.h"
 
 #include <gtest/gtest.h>
 
@@ -20,22 +21,21 @@
 namespace vicinity {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-using Random = std::mt19937_64;
+using Engine = std::mt19937_64;
 
-double uniform(Random& random, double lo, double hi) {
+double uniform(Engine& random, double lo, double hi) {
   return std::uniform_real_distribution<double>(lo, hi)(random);
 }
 
-Eigen::VectorXd random_vector(Random& random, Eigen::Index n) {
+Eigen::VectorXd random_vector(Engine& random, Eigen::Index n) {
   std::normal_distribution<double> normal;
   return Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
 }
 
 // A drag like that of an arm: a few points, each with its Jacobian, over many orders of magnitude.
-Eigen::MatrixXd random_drag(Random& random, Eigen::Index n) {
+Eigen::MatrixXd random_drag(Engine& random, Eigen::Index n) {
   Eigen::MatrixXd drag = Eigen::MatrixXd::Zero(n, n);
   const int points = std::uniform_int_distribution(0, 2 * static_cast<int>(n))(random);
   for (int p = 0; p < points; ++p) {
@@ -45,7 +45,7 @@ Eigen::MatrixXd random_drag(Random& random, Eigen::Index n) {
   return drag;
 }
 
-Eigen::MatrixXd random_definite(Random& random, Eigen::Index n) {
+Eigen::MatrixXd random_definite(Engine& random, Eigen::Index n) {
   Eigen::MatrixXd matrix = 0.05 * Eigen::MatrixXd::Identity(n, n);
   for (int p = 0; p < 3; ++p) {
     const Eigen::VectorXd j = random_vector(random, n);
@@ -61,12 +61,10 @@ LimiterOptions joints(const Eigen::MatrixXd& damping) {
   return options;
 }
 
-Eigen::MatrixXd scalar(double value) { return Eigen::MatrixXd::Constant(1, 1, value); }
-
 TEST(DragLimiter, RhoIsNeverBelowTheLargestEigenvalueAndHardlyAbove) {
   for (int seed = 0; seed < 3000; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(static_cast<std::uint64_t>(seed));
+    Engine random(static_cast<std::uint64_t>(seed));
     const auto n = std::uniform_int_distribution<Eigen::Index>(1, axis_capacity)(random);
     const Eigen::MatrixXd damping =
         seed % 2 == 0 ? random_definite(random, n)
@@ -87,7 +85,7 @@ TEST(DragLimiter, RhoIsNeverBelowTheLargestEigenvalueAndHardlyAbove) {
 TEST(DragLimiter, RhoOfPlainDampingIsNeverBelowEigensLargestEigenvalue) {
   for (int seed = 0; seed < 3000; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(static_cast<std::uint64_t>(seed));
+    Engine random(static_cast<std::uint64_t>(seed));
     const auto n = std::uniform_int_distribution<Eigen::Index>(1, axis_capacity)(random);
     const Eigen::MatrixXd drag = random_drag(random, n);
     DragLimiter limiter(joints(Eigen::MatrixXd::Identity(n, n)));
@@ -100,7 +98,7 @@ TEST(DragLimiter, RhoOfPlainDampingIsNeverBelowEigensLargestEigenvalue) {
 TEST(DragLimiter, ScaledDragIsNeverAboveTheDampingAndDragBelowItIsLeftAlone) {
   for (int seed = 0; seed < 500; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(static_cast<std::uint64_t>(seed));
+    Engine random(static_cast<std::uint64_t>(seed));
     const auto n = std::uniform_int_distribution<Eigen::Index>(1, 8)(random);
     const Eigen::MatrixXd damping = random_definite(random, n), drag = random_drag(random, n);
     const Eigen::VectorXd velocity = random_vector(random, n);
@@ -122,7 +120,7 @@ TEST(DragLimiter, ScaledDragIsNeverAboveTheDampingAndDragBelowItIsLeftAlone) {
 TEST(DragLimiter, TorqueNeverPushesAndNormsStayWithinTheirLimits) {
   for (int seed = 0; seed < 2000; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(static_cast<std::uint64_t>(seed));
+    Engine random(static_cast<std::uint64_t>(seed));
     const bool cartesian = seed % 2 == 0;
     const auto n = cartesian ? 3 : std::uniform_int_distribution<Eigen::Index>(1, 8)(random);
     LimiterOptions options = joints(1e3 * random_definite(random, n));
@@ -297,7 +295,7 @@ TEST(DragLimiter, OptionsThatDoNotFitAreRefused) {
 
 TEST(DragLimiter, TakesNoMemoryAfterConstruction) {
   for (const Eigen::Index n : {1, 3, 7, 16}) {
-    Random random(static_cast<std::uint64_t>(n));
+    Engine random(static_cast<std::uint64_t>(n));
     LimiterOptions options = joints(random_definite(random, n));
     options.mass = random_definite(random, n);
     options.encoder_step = options.dry_friction = Eigen::VectorXd::Ones(n);
@@ -342,7 +340,7 @@ TEST(Passive, AuditNeverGoesNegativeWhereDragJumpsWithinTheDamping) {
   for (const int periods_a_jump : {1, 10, 1000}) {
     SCOPED_TRACE("a jump in " + std::to_string(periods_a_jump) + " periods");
     const double damping = 0.6, period = 0.001;
-    Random random(5);
+    Engine random(5);
     EnergyAudit audit(scalar(damping)), too_high(scalar(damping));
     double x = 0, velocity = 1, drag = 0;
     for (int k = 0; k < 1'000'000; ++k) {
@@ -370,7 +368,7 @@ TEST(Passive, AuditNeverGoesNegativeWhereDragJumpsWithinTheDamping) {
 // `estimated`, the limiter gets the velocity of the estimator, whose windows vary.
 void expect_passive(int seed, bool estimated) {
   SCOPED_TRACE("seed " + std::to_string(seed));
-  Random random(static_cast<std::uint64_t>(seed));
+  Engine random(static_cast<std::uint64_t>(seed));
   const auto n = std::uniform_int_distribution<Eigen::Index>(1, 7)(random);
   const Eigen::MatrixXd damping =
       estimated ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)) : random_definite(random, n);

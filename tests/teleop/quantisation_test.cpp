@@ -14,7 +14,7 @@
 namespace vicinity {
 namespace {
 
-constexpr double period = 0.001, encoder_step = 1e-4, dry_friction = 0.05;
+constexpr double sample_period = 0.001, encoder_step = 1e-4, dry_friction = 0.05;
 
 // A mass with dry friction and no viscous damping at all, behind an encoder: integrated exactly,
 // from stop to stop, under a force held for one period.
@@ -24,7 +24,7 @@ class DryMass {
       : mass_(mass), position_(position), velocity_(velocity) {}
 
   void hold(double force) {
-    double left = period;
+    double left = sample_period;
     while (left > 0) {
       if (velocity_ == 0 && std::abs(force) <= dry_friction) return;
       const double direction =
@@ -60,7 +60,7 @@ int still_moving(double mass, int window, const Drag& drag) {
     for (int k = 0; k < 1000; ++k) {
       readings.push_back(joint.encoder());
       readings.pop_front();
-      const double velocity = (readings.back() - readings.front()) / (window * period);
+      const double velocity = (readings.back() - readings.front()) / (window * sample_period);
       joint.hold(-drag(velocity) * velocity);
       if (k >= 900) fastest_at_last = std::max(fastest_at_last, joint.speed());
     }
@@ -72,15 +72,15 @@ int still_moving(double mass, int window, const Drag& drag) {
 // Heavy enough that the drag alone would bring it to rest, friction or not (rule 6, with the
 // window's delay); and light enough that one step's force moves it visibly.
 double mass_for(int window) {
-  const double most = 2 * quantisation_limit(dry_friction, window * period, encoder_step);
-  return 2 * most * period / mass_limit(window - 1);
+  const double most = 2 * quantisation_limit(dry_friction, window * sample_period, encoder_step);
+  return 2 * most * sample_period / mass_limit(window - 1);
 }
 
 // Test F of the stability rules.
 TEST(Quantisation, NoLimitCycleAtTheBoundAndOneAtTwiceIt) {
   for (const int window : {1, 2, 4}) {
     SCOPED_TRACE("M = " + std::to_string(window));
-    const double bound = quantisation_limit(dry_friction, window * period, encoder_step);
+    const double bound = quantisation_limit(dry_friction, window * sample_period, encoder_step);
     const double mass = mass_for(window);
     EXPECT_EQ(still_moving(mass, window, [&](double) { return bound; }), 0);
     EXPECT_GT(still_moving(mass, window, [&](double) { return 1.2 * bound; }), 0);
@@ -99,10 +99,10 @@ TEST(Quantisation, TheLimiterKeepsAnyDragFromBuzzing) {
     options.dry_friction = Eigen::VectorXd::Constant(1, dry_friction);
     DragLimiter limiter(options);
     const Eigen::MatrixXd asked = Eigen::MatrixXd::Constant(
-        1, 1, 7 * quantisation_limit(dry_friction, window * period, encoder_step));
+        1, 1, 7 * quantisation_limit(dry_friction, window * sample_period, encoder_step));
     const auto drag = [&](double velocity) {
       const Eigen::VectorXd v = Eigen::VectorXd::Constant(1, velocity);
-      const LimiterOutput output = limiter.limit(asked, v, {.window_s = window * period});
+      const LimiterOutput output = limiter.limit(asked, v, {.window_s = window * sample_period});
       EXPECT_EQ(output.limit, DragLimit::quantisation);
       return output.scale * asked(0, 0);
     };

@@ -20,7 +20,7 @@
 namespace vicinity {
 namespace {
 
-constexpr double period = 0.001;
+constexpr double nominal_period = 0.001;
 // Each group has 20 arms for `strict` and 5 for `closing`. Sanitizers make a tick ten times as
 // long.
 constexpr std::uint64_t arms_each = 20;
@@ -149,12 +149,13 @@ class Hand {
       manner_ = random_.whole(0, 3);
       uneven_ = random_.whole(0, 1) == 1;
     }
-    const double dt = clever    ? 1.4999 * period
-                      : uneven_ ? random_.between(0.3, 1.49) * period
-                                : period;
+    const double dt = clever    ? 1.4999 * nominal_period
+                      : uneven_ ? random_.between(0.3, 1.49) * nominal_period
+                                : nominal_period;
     t_ += dt;
     if (manner_ != 0) phase_ += dt;
-    const double shake = manner_ == 2   ? (++turn_ % 2 == 0 ? 1e-4 : -1e-4) * std::sqrt(dt / period)
+    const double shake = manner_ == 2
+                             ? (++turn_ % 2 == 0 ? 1e-4 : -1e-4) * std::sqrt(dt / nominal_period)
                          : manner_ == 3 ? random_.between(-1e-4, 1e-4)
                                         : 0;
     if (clever) follow(last);

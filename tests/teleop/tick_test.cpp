@@ -162,6 +162,11 @@ TEST_P(FeltByEveryPoint, IsWhatTheJointsGet) {
                                    mu_e > 0 ? plain[p].towards_surface(field) : Vec3(Vec3::Zero()));
           wrenches[link].force += F;
           wrenches[link].moment += r.cross(F);
+          if (k == 0) continue;
+          const PointDrag felt_there = teleoperation.point_drag(p);
+          ASSERT_NEAR(felt_there.mu_e, mu_e, 1e-6 * mu_e) << "tick " << k << ", point " << p;
+          ASSERT_LT((felt_there.force_W - F).norm(), 1e-5 * F.norm() + 1e-9)
+              << "tick " << k << ", point " << p;
         }
       }
       Vec3 tau;

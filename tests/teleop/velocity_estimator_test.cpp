@@ -11,14 +11,11 @@
 #include <random>
 #include <vector>
 
+#include "teleop/one_axis.h"
 #include "vicinity/geometry/error.h"
 
 namespace vicinity {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-Eigen::VectorXd one(double value) { return Eigen::VectorXd::Constant(1, value); }
 
 VelocityOptions with_band(double band) { return {.noise_band = one(band)}; }
 

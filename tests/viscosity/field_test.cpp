@@ -104,6 +104,27 @@ TEST(Field, OutsideTheWorkspaceAndWithoutAPositionAllIsEmpty) {
   }
 }
 
+TEST(Field, ManyLookupsAtOnceAreThoseOneByOne) {
+  for_each_seed(4, [](std::mt19937& random) {
+    const DenseField dense = DenseField::random(random, false);
+    const ViscosityField field = dense.sparse();
+    const VoxelIndex dims = dense.workspace.dims;
+    for (const std::size_t count : {0, 1, 63, 64, 65, 1000}) {
+      std::vector<VoxelIndex> voxels(count);
+      std::vector<VoxelCode> codes(count + 1, 0xABCD), expected;
+      for (VoxelIndex& v : voxels) {
+        v = {whole(random, -2, dims.i + 1), whole(random, -2, dims.j + 1),
+             whole(random, -2, dims.k + 1)};
+        const bool held = dense.workspace.box().contains(v);
+        expected.push_back(held ? dense.codes[dense.at(v)] : VoxelCode{0});
+      }
+      expected.push_back(0xABCD);  // and not one more
+      field.codes_at(voxels, codes);
+      EXPECT_EQ(codes, expected);
+    }
+  });
+}
+
 TEST(Field, RankedObjectsAreSampledAsTheVoxelThatHoldsThePoint) {
   for_each_seed(4, [](std::mt19937& random) {
     const DenseField dense = DenseField::random(random, false);

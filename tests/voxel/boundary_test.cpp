@@ -78,6 +78,37 @@ TEST(Boundary, AgreesWithSeparatingAxesOnRandomTriangles) {
   }
 }
 
+TEST(Boundary, AgreesWithSeparatingAxesOnTrianglesOfAFineScan) {
+  for (unsigned seed = 1; seed <= 3000; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> offset(-0.5, 0.5), origin(-9, 9);
+    std::uniform_int_distribution<int> quarter(-2, 2);
+    // Across the sides of blocks and slabs, too; some with corners and edges on the grid.
+    const Vec3 centre =
+        seed % 4 == 0 ? Vec3(64, 8, 8) : Vec3(origin(random), origin(random), origin(random));
+    const double size = seed % 5 == 0 ? 2.2 : seed % 5 == 1 ? 0.1 : 1;
+    const auto vertex = [&]() -> Vec3 {
+      if (seed % 7 == 0) {
+        return centre.array().round().matrix() +
+               0.25 * Vec3(quarter(random), quarter(random), quarter(random));
+      }
+      return centre + size * Vec3(offset(random), offset(random), offset(random));
+    };
+    expect_exact(one_triangle(vertex(), vertex(), vertex()));
+  }
+}
+
+TEST(Boundary, AgreesWithSeparatingAxesOnLongTriangles) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> offset(-60, 60);
+    const auto vertex = [&] { return Vec3(offset(random), offset(random), offset(random) / 4); };
+    expect_exact(one_triangle(vertex(), vertex(), vertex()));
+  }
+}
+
 TEST(Boundary, AgreesWithSeparatingAxesOnSlivers) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);

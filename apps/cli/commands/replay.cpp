@@ -32,16 +32,16 @@ namespace vicinity::cli {
 namespace {
 
 // Of a tick's record there are some 200 bytes: two gigabytes.
-constexpr double most_ticks = 1e7;
+constexpr double most_periods = 1e7;
 
 // Ticks from 0 to the end, both included.
 std::uint64_t tick_count(double length_s, double rate) {
   const double periods = std::floor(length_s * rate * (1 + 1e-12));
-  if (!(periods < most_ticks)) {
+  if (!(periods < most_periods)) {
     throw Error({.where = "--duration",
                  .what = "these are more ticks than can be recorded",
                  .found = fmt::format("{:.4g} s at {:g} Hz", length_s, rate),
-                 .expected = fmt::format("at most {:.0f}", most_ticks),
+                 .expected = fmt::format("at most {:.0f}", most_periods),
                  .hint = "a lower --rate, or a shorter --duration"});
   }
   return static_cast<std::uint64_t>(periods) + 1;

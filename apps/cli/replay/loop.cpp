@@ -49,7 +49,7 @@ class Ticker {
     const std::int64_t before = monotonic_ns();
     (void)teleoperation_.tick(input_, output_);  // the output holds its status
     const auto took = static_cast<double>(monotonic_ns() - before);
-    recording_.add(time_s, output_, late_us, 1e-3 * took);
+    recording_.add(time_s, q_.data(), output_, late_us, 1e-3 * took);
   }
 
  private:

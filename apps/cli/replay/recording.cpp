@@ -8,9 +8,13 @@
 namespace vicinity::cli {
 
 Recording::Recording(std::size_t capacity, std::size_t joints)
-    : ticks_(capacity), torques_(capacity * joints), joints_(joints) {}
+    : ticks_(capacity),
+      torques_(capacity * joints),
+      positions_(capacity * joints),
+      joints_(joints) {}
 
-void Recording::add(double time_s, const Output& output, double late_us, double tick_us) noexcept {
+void Recording::add(double time_s, const double* q, const Output& output, double late_us,
+                    double tick_us) noexcept {
   if (size_ == ticks_.size()) return;
   TickRecord& tick = ticks_[size_];
   tick.time_s = time_s;
@@ -25,6 +29,7 @@ void Recording::add(double time_s, const Output& output, double late_us, double 
   tick.status = output.status;
   tick.limit = output.limiter.limit;
   std::copy_n(output.torque.data(), joints_, &torques_[size_ * joints_]);
+  std::copy_n(q, joints_, &positions_[size_ * joints_]);
   energy_ = output.energy;
   ++size_;
 }

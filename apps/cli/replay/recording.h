@@ -33,8 +33,10 @@ class Recording {
   /// All memory is written to once, so that no tick is the first to touch a page of it.
   Recording(std::size_t capacity, std::size_t joints);
 
+  /// @param q                that the tick was given, shape (joints(),) [rad or m]
   /// @param late_us,tick_us  as in TickRecord. Does nothing once it is full.
-  void add(double time_s, const Output& output, double late_us, double tick_us) noexcept;
+  void add(double time_s, const double* q, const Output& output, double late_us,
+           double tick_us) noexcept;
 
   std::span<const TickRecord> ticks() const noexcept { return {ticks_.data(), size_}; }
   std::size_t joints() const noexcept { return joints_; }
@@ -42,12 +44,16 @@ class Recording {
   std::span<const double> torque(std::size_t tick) const noexcept {
     return {&torques_[tick * joints_], joints_};
   }
+  /// Joint positions of a tick, shape (joints(),) [rad or m].
+  std::span<const double> position(std::size_t tick) const noexcept {
+    return {&positions_[tick * joints_], joints_};
+  }
   /// The energy account as the last tick left it.
   const EnergyBalance& energy() const noexcept { return energy_; }
 
  private:
   std::vector<TickRecord> ticks_;
-  std::vector<double> torques_;
+  std::vector<double> torques_, positions_;
   std::size_t joints_, size_ = 0;
   EnergyBalance energy_;
 };

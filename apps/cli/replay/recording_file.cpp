@@ -21,7 +21,7 @@ enum class Format { csv, json_lines };
 
 // Words are made ready for the format once, not for every line.
 struct Words {
-  std::vector<std::string> torques, links, objects, statuses;
+  std::vector<std::string> torques, positions, links, objects, statuses;
 };
 
 std::string ready(const std::string& word, Format format) {
@@ -32,6 +32,7 @@ Words words_of(const RobotModel& robot, const ViscosityField& field, Format form
   Words words;
   for (std::size_t c = 0; c < robot.coordinates.size(); ++c) {
     words.torques.push_back(ready("tau_" + joint_name(robot, c), format));
+    words.positions.push_back(ready("q_" + joint_name(robot, c), format));
   }
   for (const Link& link : robot.links) words.links.push_back(ready(link.name, format));
   for (const FieldObject& object : field.objects()) {
@@ -55,10 +56,13 @@ class Lines {
     for (const std::string& torque : words_.torques) text_ += "," + torque;
     text_ +=
         ",fx,fy,fz,mx,my,mz,master_force,status,reason_link,reason_object,reason_rank,"
-        "reason_distance_mm\n";
+        "reason_distance_mm";
+    for (const std::string& position : words_.positions) (text_ += ',') += position;
+    text_ += '\n';
   }
 
-  void line(const TickRecord& tick, double t, std::span<const double> torque) {
+  void line(const TickRecord& tick, double t, std::span<const double> torque,
+            std::span<const double> position) {
     first_ = true;
     if (format_ == Format::json_lines) text_ += '{';
     value("\"t\"", fmt::format("{}", t));
@@ -72,6 +76,7 @@ class Lines {
     number("\"master_force\"", tick.master_force);
     value("\"status\"", words_.statuses[static_cast<std::size_t>(tick.status)]);
     reason(tick.reason);
+    for (std::size_t c = 0; c < position.size(); ++c) number(words_.positions[c], position[c]);
     text_ += format_ == Format::json_lines ? "}\n" : "\n";
   }
 
@@ -118,7 +123,7 @@ void write_recording(const Recording& recording, const RobotModel& robot,
   if (format == Format::csv) lines.header();
   for (std::size_t k = 0; k < recording.ticks().size(); ++k) {
     const TickRecord& tick = recording.ticks()[k];
-    lines.line(tick, t_start + tick.time_s, recording.torque(k));
+    lines.line(tick, t_start + tick.time_s, recording.torque(k), recording.position(k));
     if (lines.text().size() < piece) continue;
     file.write(lines.text());
     lines.text().clear();

@@ -13,10 +13,10 @@
 namespace vicinity::cli {
 
 /// Writes t, tau_<joint>..., fx,fy,fz,mx,my,mz, master_force, status, reason_link, reason_object,
-/// reason_rank, reason_distance_mm [s, N·m, N, N·m, N, mm], one line for each tick: CSV, or JSON
-/// lines where the name ends in .jsonl. A reason is empty (null) where nothing is felt; its object
-/// and what follows are, where the point has left and only remembers. No distance is known in
-/// boundary and inner voxels but zero.
+/// reason_rank, reason_distance_mm, q_<joint>... [s, N·m, N, N·m, N, mm, rad], one line for each
+/// tick: CSV, or JSON lines where the name ends in .jsonl. A reason is empty (null) where nothing
+/// is felt; its object, rank and distance are, where the point has left and only remembers. No
+/// distance is known in boundary and inner voxels but zero.
 ///
 /// @param t_start  time of the first tick, in the log's own count [s]
 /// Errors: throws Error where the file cannot be written; nothing is left behind then.

@@ -15,11 +15,12 @@
 namespace vicinity::report {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+constexpr double radians_per_degree = std::numbers::pi / 180;
 
 // Primitives have their middle at the origin. A voxel is their metre here.
 TriangleMesh at(const Vec3& middle, TriangleMesh mesh, double turn_degrees = 0) {
-  return place(std::move(mesh), 1, pose_from_rpy(middle, {0, 0, turn_degrees * degree}));
+  return place(std::move(mesh), 1,
+               pose_from_rpy(middle, {0, 0, turn_degrees * radians_per_degree}));
 }
 
 }  // namespace
@@ -58,8 +59,8 @@ Part cube() { return {"cube", at({30, 30, 30}, primitive::box({20, 20, 20})), {6
 Part pentagonal_cylinder() {
   std::vector<std::array<double, 2>> corners;
   for (int n = 0; n < 5; ++n) {
-    corners.push_back(
-        {24 * std::cos((90 + 72 * n) * degree), 24 * std::sin((90 + 72 * n) * degree)});
+    corners.push_back({24 * std::cos((90 + 72 * n) * radians_per_degree),
+                       24 * std::sin((90 + 72 * n) * radians_per_degree)});
   }
   return {
       "pentagonal_cylinder", at({64, 64, 50}, primitive::extrusion(corners, 40)), {128, 128, 100}};

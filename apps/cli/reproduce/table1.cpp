@@ -17,7 +17,7 @@
 namespace vicinity::report {
 namespace {
 
-constexpr int ranks = 6;
+constexpr int rank_count = 6;
 
 // How far voxels of rank n or less reach from the ball's surface, along a direction.
 double reach_along(const ViscosityField& field, const Vec3& direction, int n) {
@@ -42,9 +42,9 @@ ElementPerformance measure(const ViscosityField& field, const ViscosityField& di
           .m = object.m,
           .cells = ShapingElement(object.layers, object.m).cell_count(),
           .last = layer_reaches(field, distances).back(),
-          .axis = reach_alike(field, {1, 0, 0}, ranks),
-          .face_diagonal = reach_alike(field, {1, 1, 0}, ranks),
-          .space_diagonal = reach_alike(field, {1, 1, 1}, ranks),
+          .axis = reach_alike(field, {1, 0, 0}, rank_count),
+          .face_diagonal = reach_alike(field, {1, 1, 0}, rank_count),
+          .space_diagonal = reach_alike(field, {1, 1, 1}, rank_count),
           .plain = visits_of_plain_loop(field),
           .ours = visits_of_frontier(field)};
 }
@@ -66,12 +66,13 @@ std::vector<std::vector<std::string>> as_table(const std::vector<ElementPerforma
   for (const ElementPerformance& row : rows) {
     const auto number = [](double value) { return fmt::format("{:.2f}", value); };
     const auto percent = [](double share) { return fmt::format("{:.2f} %", 100 * share); };
-    table.push_back(
-        {fmt::format("{} m = {}", to_string(row.shape), row.m), fmt::format("{}", row.cells),
-         number(row.thickness()), number(row.last.least / ranks), number(row.last.most / ranks),
-         number(row.axis), number(row.face_diagonal), number(row.space_diagonal),
-         percent(row.distortion()), percent(row.plain.redundant()), percent(row.ours.redundant()),
-         cli::grouped(row.plain.cells), cli::grouped(row.ours.cells)});
+    table.push_back({fmt::format("{} m = {}", to_string(row.shape), row.m),
+                     fmt::format("{}", row.cells), number(row.thickness()),
+                     number(row.last.least / rank_count), number(row.last.most / rank_count),
+                     number(row.axis), number(row.face_diagonal), number(row.space_diagonal),
+                     percent(row.distortion()), percent(row.plain.redundant()),
+                     percent(row.ours.redundant()), cli::grouped(row.plain.cells),
+                     cli::grouped(row.ours.cells)});
   }
   return table;
 }
@@ -81,8 +82,8 @@ std::filesystem::path write(const Workshop& workshop, const std::vector<ElementP
       "element,m,cells,thickness_vox,least_vox,most_vox,axis_vox,face_diagonal_vox,space_diagonal_"
       "vox,distortion,plain_visits,plain_redundant,ours_visits,ours_redundant,changed");
   for (const ElementPerformance& row : rows) {
-    table.row(to_string(row.shape), row.m, row.cells, row.thickness(), row.last.least / ranks,
-              row.last.most / ranks, row.axis, row.face_diagonal, row.space_diagonal,
+    table.row(to_string(row.shape), row.m, row.cells, row.thickness(), row.last.least / rank_count,
+              row.last.most / rank_count, row.axis, row.face_diagonal, row.space_diagonal,
               row.distortion(), row.plain.cells, row.plain.redundant(), row.ours.cells,
               row.ours.redundant(), row.plain.changed);
   }
@@ -173,7 +174,7 @@ Outcome table1(Workshop& workshop) {
       .strips = {}};
   for (const LayerShape shape : {LayerShape::cube, LayerShape::sphere}) {
     for (const int m : {1, 2, 3, 4}) {
-      const ViscosityField field = workshop.field(part, {.m = m, .q = ranks, .shape = shape});
+      const ViscosityField field = workshop.field(part, {.m = m, .q = rank_count, .shape = shape});
       rows.push_back(measure(field, distances));
       fits.push_back(rank_fit(fmt::format("{} m = {}", to_string(shape), m), field, distances, m));
       if (m != 3) continue;
@@ -181,7 +182,7 @@ Outcome table1(Workshop& workshop) {
           {{"axis", {1, 0, 0}}, {"face diagonal", {1, 1, 0}}, {"space diagonal", {1, 1, 1}}}};
       for (const auto& [name, direction] : directions) {
         cli::Series series{.name = name, .points = {}};
-        for (int n = 1; n <= ranks; ++n) {
+        for (int n = 1; n <= rank_count; ++n) {
           series.points.emplace_back(n, reach_alike(field, direction, n));
         }
         chart_of_reach.panels[shape == LayerShape::cube ? 0 : 1].series.push_back(series);

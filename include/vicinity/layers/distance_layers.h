@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "vicinity/layers/ranked_neighbours.h"
 #include "vicinity/mesh/triangle_mesh.h"
@@ -33,8 +34,8 @@ struct DistanceLayers {
   BlockGrid<DistanceBlock> distances;
 };
 
-/// Exact Euclidean distance from voxel centres to the surface, by scan conversion of the region in
-/// which each face, edge and vertex can be nearest.
+/// Exact Euclidean distance from voxel centres to the surface, by the regions in which each face,
+/// edge and vertex can be nearest.
 ///
 /// With D the distance from the centre of an empty voxel, in voxels, every point of the voxel is at
 /// least s = max(0, D - half_diagonal_vox) away, and its rank is floor(s / m) + 1: rank n says "at
@@ -50,5 +51,30 @@ struct DistanceLayers {
 /// Errors: throws Error for m or q out of range.
 DistanceLayers distance_layers(const TriangleMesh& mesh, const VoxelSet& boundary,
                                const VoxelSet& inner, const Workspace& workspace, int m, int q);
+
+/// The same for a part of the voxels at a time: what the surface's faces, edges and vertices have
+/// to do with each slab of eight layers is found once.
+class SurfaceDistances {
+ public:
+  /// @param mesh  the object, placed in W [m]; not needed afterwards
+  /// @param m, q  as above
+  /// Errors: throws Error for m or q out of range.
+  SurfaceDistances(const TriangleMesh& mesh, const Workspace& workspace, int m, int q);
+  SurfaceDistances(SurfaceDistances&&) noexcept;
+  SurfaceDistances& operator=(SurfaceDistances&&) noexcept;
+  ~SurfaceDistances();
+
+  /// The box of all layers of the object whose boundary lies in `boundary`.
+  VoxelBox box(const VoxelBox& boundary) const;
+
+  /// The layers' voxels within a box; only there need boundary and inner be known. Slabs are worked
+  /// on side by side: a box of few slabs keeps few threads busy.
+  DistanceLayers layers(const VoxelSet& boundary, const VoxelSet& inner,
+                        const VoxelBox& within) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<const Parts> parts_;
+};
 
 }  // namespace vicinity

@@ -103,6 +103,12 @@ struct Counts {
   std::uint32_t points_looked = 0;  ///< in this tick: points that were not skipped as far away
 };
 
+/// What one body point felt in a tick: eq. 5, before the limiter.
+struct PointDrag {
+  double mu_e = 0;              ///< effective viscosity [N·s/m³]
+  Vec3 force_W = Vec3::Zero();  ///< on the point, in W, shape (3,) [N]
+};
+
 struct Output {
   Status status = Status::ok;
   AxisVector torque;        ///< on the joints: -s D qd, shape (joint_count,) [N·m or N]
@@ -128,6 +134,11 @@ class Teleoperation {
 
   int joint_count() const noexcept;
   const BodyPoints& points() const noexcept;
+
+  /// What a point felt in the last tick that was not refused. For the tick's own thread, between
+  /// two ticks. @param point  index into points(), less than points().x.size() Real-time: no
+  /// allocation.
+  PointDrag point_drag(std::uint32_t point) const noexcept;
 
   /// One period. `output` is written whole whatever happens; its torque is zero, and safe, for
   /// every status from `deadline_missed` on. Real-time: time in links, in clusters of points that

@@ -56,23 +56,6 @@ struct FieldHeader {
 };
 static_assert(sizeof(FieldHeader) == 320);
 
-/// A reference of 32 bits: either uniform, the value of every voxel below it, or the number of what
-/// lies below it. The number of a brick of codes counts units of 8 bytes, and the log2 of its bits
-/// per voxel (0..4) stands above it; packed codes of less than 16 bits index the table behind them.
-struct FieldReference {
-  static constexpr std::uint32_t uniform_bit = std::uint32_t{1} << 31;
-  static constexpr int width_shift = 28;
-  static constexpr std::uint32_t number_mask = (std::uint32_t{1} << width_shift) - 1;
-  static constexpr std::size_t brick_unit = 8;  ///< [bytes]
-
-  static constexpr std::uint32_t uniform(std::uint16_t value) noexcept {
-    return uniform_bit | value;
-  }
-  static constexpr bool is_uniform(std::uint32_t reference) noexcept {
-    return (reference & uniform_bit) != 0;
-  }
-};
-
 /// Stored where a voxel keeps no distance.
 inline constexpr std::uint16_t no_distance = 0xFFFF;
 
@@ -84,10 +67,23 @@ std::uint64_t checksum_of(std::span<const std::byte> bytes) noexcept;
 /// Errors: throws Error where they do not fit 16 bits.
 std::vector<VoxelRecord> records_of(const std::vector<FieldObject>& objects);
 
+class CodeMasks;  // see src/viscosity/code_masks.h
+
 /// One region on its way into a field: empty until bricks are put in, in rising order. Threads may
 /// prepare different regions at the same time.
 class RegionDraft {
  public:
+  /// Bricks of codes, or of distances: 512 references, and what those that are not uniform refer
+  /// to.
+  struct Layer {
+    std::array<std::uint32_t, 512> references;  // numbers count units within `bytes`
+    std::array<std::uint32_t, 512> hashes;
+    std::vector<std::byte> bytes;
+
+    /// Whether every brick is the same uniform one.
+    bool is_uniform() const noexcept;
+  };
+
   RegionDraft();
 
   /// Puts the codes of one brick in, once at most.
@@ -95,19 +91,25 @@ class RegionDraft {
   /// @param codes  of its voxels, shape (8, 8, 8) as z, y, x
   void put_codes(std::size_t brick, std::span<const VoxelCode, 512> codes);
 
+  /// The same for a brick given by the voxels of each of its codes.
+  void put_masks(std::size_t brick, const CodeMasks& masks);
+
+  /// The same for a brick that is one code throughout, or packed already.
+  /// @param packed  packed codes and their table, as they lie in an image
+  void put_uniform(std::size_t brick, VoxelCode code);
+  void put_packed(std::size_t brick, unsigned width, std::span<const std::byte> packed);
+
   /// Puts the stored distances of one brick in, in steps, with no_distance where none is kept.
   void put_distances(std::size_t brick, std::span<const std::uint16_t, 512> steps);
 
- private:
-  friend class FieldWriter;
+  const Layer& codes() const noexcept { return codes_; }
+  const Layer& distances() const noexcept { return distances_; }
 
-  struct Layer {
-    std::array<std::uint32_t, 512> references;  // numbers count units within `bytes`
-    std::array<std::uint32_t, 512> hashes;
-    std::vector<std::byte> bytes;
-  };
+ private:
   Layer codes_, distances_;
 };
+
+class SparseLayer;
 
 /// Puts regions together into an image.
 class FieldWriter {
@@ -123,17 +125,22 @@ class FieldWriter {
   /// Errors: throws Error where the field outgrows 2 GiB of bricks.
   void append(const RegionDraft& region);
 
+  /// The sparse layers themselves, for who puts regions in faster than one by one: their cells are
+  /// the regions of the root. No distances where no object keeps any.
+  SparseLayer& codes() noexcept { return *codes_; }
+  SparseLayer* distances() noexcept { return distances_.get(); }
+
   /// The field of everything appended. Call it last and once: the regions are given up.
   /// @param counts  voxels of the field by kind
   ViscosityField finish(const VoxelCounts& counts);
 
  private:
-  struct Layer;
   Workspace workspace_;
   std::vector<FieldObject> objects_;
   std::vector<VoxelRecord> records_;
   VoxelIndex region_dims_;
-  std::unique_ptr<Layer> codes_, distances_;
+  std::size_t next_ = 0;  // region to append
+  std::unique_ptr<SparseLayer> codes_, distances_;
 };
 
 }  // namespace vicinity

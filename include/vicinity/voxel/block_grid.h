@@ -6,8 +6,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
+#include "vicinity/voxel/block_store.h"
 #include "vicinity/voxel/workspace.h"
 
 namespace vicinity {
@@ -24,9 +27,8 @@ inline BlockIndex block_of(const VoxelIndex& v) noexcept { return {v.i >> 6, v.j
 
 /// Sparse grid of blocks over a box of voxels.
 ///
-/// Blocks with the same k form a slab, and each slab owns its storage: threads may create and write
-/// blocks of different slabs at the same time. Creating a block invalidates references to other
-/// blocks of its slab.
+/// Blocks with the same k form a slab: threads may create and write blocks of different slabs at
+/// the same time. A block stays where it is as long as the grid lives, also when the grid is moved.
 template <class Block>
 class BlockGrid {
  public:
@@ -36,6 +38,20 @@ class BlockGrid {
     const BlockIndex last = block_of({box.hi.i - 1, box.hi.j - 1, box.hi.k - 1});
     size_ = {last.i - lo_.i + 1, last.j - lo_.j + 1, last.k - lo_.k + 1};
     slabs_.resize(static_cast<std::size_t>(size_.k));
+    blocks_ = std::make_unique<BlockStore<Block>>();
+  }
+  BlockGrid(const BlockGrid& other)
+      : box_(other.box_), lo_(other.lo_), size_(other.size_), slabs_(other.slabs_) {
+    if (other.blocks_) blocks_ = std::make_unique<BlockStore<Block>>(*other.blocks_);
+  }
+  BlockGrid(BlockGrid&&) noexcept = default;
+  BlockGrid& operator=(BlockGrid other) noexcept {
+    std::swap(box_, other.box_);
+    std::swap(lo_, other.lo_);
+    std::swap(size_, other.size_);
+    slabs_.swap(other.slabs_);
+    blocks_.swap(other.blocks_);
+    return *this;
   }
 
   /// The voxels that may be stored.
@@ -47,7 +63,7 @@ class BlockGrid {
   /// The block, or nullptr where nothing is stored (also outside the box).
   const Block* find(const BlockIndex& b) const noexcept {
     const std::uint32_t id = id_of(b);
-    return id == 0 ? nullptr : &slabs_[static_cast<std::size_t>(b.k - lo_.k)].blocks[id - 1];
+    return id == 0 ? nullptr : &(*blocks_)[id - 1];
   }
   Block* find(const BlockIndex& b) noexcept {
     return const_cast<Block*>(static_cast<const BlockGrid*>(this)->find(b));
@@ -56,26 +72,23 @@ class BlockGrid {
   /// The block, made (value-initialised) if it was not there. `b` must touch the box.
   Block& make(const BlockIndex& b) {
     Slab& slab = slabs_[static_cast<std::size_t>(b.k - lo_.k)];
-    if (slab.ids.empty()) {
-      slab.ids.resize(static_cast<std::size_t>(size_.i) * static_cast<std::size_t>(size_.j));
+    if (slab.empty()) {
+      slab.resize(static_cast<std::size_t>(size_.i) * static_cast<std::size_t>(size_.j));
     }
-    std::uint32_t& id = slab.ids[cell(b)];
-    if (id == 0) {
-      slab.blocks.emplace_back();
-      id = static_cast<std::uint32_t>(slab.blocks.size());
-    }
-    return slab.blocks[id - 1];
+    std::uint32_t& id = slab[cell(b)];
+    if (id == 0) id = blocks_->add() + 1;
+    return (*blocks_)[id - 1];
   }
 
   /// Calls visit(BlockIndex, const Block&) for every stored block of slab k, in order of j, then i.
   template <class Visit>
   void for_each_in_slab(std::int32_t k, Visit&& visit) const {
     const Slab& slab = slabs_[static_cast<std::size_t>(k - lo_.k)];
-    for (std::size_t c = 0; c < slab.ids.size(); ++c) {
-      if (slab.ids[c] == 0) continue;
+    for (std::size_t c = 0; c < slab.size(); ++c) {
+      if (slab[c] == 0) continue;
       const auto i = static_cast<std::int32_t>(c % static_cast<std::size_t>(size_.i));
       const auto j = static_cast<std::int32_t>(c / static_cast<std::size_t>(size_.i));
-      visit(BlockIndex{lo_.i + i, lo_.j + j, k}, slab.blocks[slab.ids[c] - 1]);
+      visit(BlockIndex{lo_.i + i, lo_.j + j, k}, (*blocks_)[slab[c] - 1]);
     }
   }
 
@@ -85,17 +98,11 @@ class BlockGrid {
     for (std::int32_t k = lo_.k; k < lo_.k + size_.k; ++k) for_each_in_slab(k, visit);
   }
 
-  std::size_t block_count() const noexcept {
-    std::size_t n = 0;
-    for (const Slab& slab : slabs_) n += slab.blocks.size();
-    return n;
-  }
+  std::size_t block_count() const noexcept { return blocks_ ? blocks_->size() : 0; }
 
  private:
-  struct Slab {
-    std::vector<std::uint32_t> ids;  // 0: nothing stored, else 1 + position in blocks
-    std::vector<Block> blocks;
-  };
+  /// Of each cell: 0 where nothing is stored, else 1 + number in blocks_. Empty where all are 0.
+  using Slab = std::vector<std::uint32_t>;
 
   std::size_t cell(const BlockIndex& b) const noexcept {
     return static_cast<std::size_t>(b.j - lo_.j) * static_cast<std::size_t>(size_.i) +
@@ -107,12 +114,13 @@ class BlockGrid {
       return 0;
     }
     const Slab& slab = slabs_[static_cast<std::size_t>(b.k - lo_.k)];
-    return slab.ids.empty() ? 0 : slab.ids[cell(b)];
+    return slab.empty() ? 0 : slab[cell(b)];
   }
 
   VoxelBox box_;
   BlockIndex lo_, size_;
   std::vector<Slab> slabs_;
+  std::unique_ptr<BlockStore<Block>> blocks_;
 };
 
 }  // namespace vicinity

@@ -4,6 +4,7 @@
 /// The voxel grid of the workspace: metres to indices and back (fig. 9).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -30,6 +31,11 @@ struct VoxelBox {
   VoxelBox grown(std::int32_t margin) const noexcept {
     return {{lo.i - margin, lo.j - margin, lo.k - margin},
             {hi.i + margin, hi.j + margin, hi.k + margin}};
+  }
+  /// What of this box lies in another; empty where nothing does.
+  VoxelBox within(const VoxelBox& other) const noexcept {
+    return {{std::max(lo.i, other.lo.i), std::max(lo.j, other.lo.j), std::max(lo.k, other.lo.k)},
+            {std::min(hi.i, other.hi.i), std::min(hi.j, other.hi.j), std::min(hi.k, other.hi.k)}};
   }
   friend bool operator==(const VoxelBox&, const VoxelBox&) = default;
 };

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "web/gate.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace vicinity::viewer {
+namespace {
+
+std::string_view without_port(std::string_view host) {
+  if (host.starts_with('[')) return host.substr(0, host.find(']') + 1);
+  return host.substr(0, host.find(':'));
+}
+
+bool names_loopback(std::string_view host) {
+  const std::string_view name = without_port(host);
+  return name == "localhost" || name == "[::1]" || name.starts_with("127.");
+}
+
+// As long for a wrong token as for a right one, whatever of it is right.
+bool same(std::string_view token, std::string_view other) {
+  unsigned difference = token.size() == other.size() ? 0 : 1;
+  for (std::size_t n = 0; n < token.size(); ++n) {
+    const char c = n < other.size() ? other[n] : '\0';
+    difference |= static_cast<unsigned>(token[n] ^ c);
+  }
+  return difference == 0;
+}
+
+}  // namespace
+
+std::optional<std::string> why_refused(const HttpRequest& request, const std::string& token,
+                                       bool on_loopback) {
+  const std::string_view host = request["host"], origin = request["origin"];
+  if (host.empty()) return "the request names no host";
+  if (on_loopback && !names_loopback(host)) {
+    return "this server is on the loopback address and goes by no other name";
+  }
+  if (request.header.contains("origin") && origin != "http://" + std::string(host) &&
+      origin != "https://" + std::string(host)) {
+    return "another page's request: its origin is not this server";
+  }
+  if (token.empty()) return {};
+  const auto given = request.query.find("token");
+  if (given == request.query.end()) return "a token is asked for: ?token=...";
+  if (!same(token, given->second)) return "the token is another one";
+  return {};
+}
+
+}  // namespace vicinity::viewer
