@@ -37,10 +37,11 @@ Operator::Operator(const OperatorParameters& parameters, const Intent& intent,
   const double spread =
       trained.cue == Cue::force ? parameters.force_spread : parameters.viscosity_spread;
   stop_level_ = trained.level * std::exp(spread * error);
+  clear_level_ = stop_level_ * std::exp(-spread);
   reference_ = trained.cue == Cue::force ? parameters.least_force : parameters.own_resistance;
   if (trained.cue == Cue::viscosity) level_ = parameters.own_resistance;
   // Too little to be told from nothing is not gone by.
-  if (trained.level < reference_ * (1 + weber_)) stop_level_ = 0;
+  if (trained.level < reference_ * (1 + weber_)) stop_level_ = clear_level_ = 0;
 }
 
 Vec3 Operator::act(double time_s, double period_s, const Senses& senses) noexcept {
@@ -88,7 +89,9 @@ void Operator::feel(double time_s, double period_s, const Senses& senses) noexce
     if (notices_at_s_ < 0) notices_at_s_ = time_s + parameters_.touch_reaction_s;
     --pending_;
   }
-  const bool as_trained = intent_.stops_by_feel && stop_level_ > 0 && level_ >= stop_level_;
+  // Who creeps on against what he sees stops as soon as he is no longer sure that it is less.
+  const double enough = creeping_ ? clear_level_ : stop_level_;
+  const bool as_trained = intent_.stops_by_feel && stop_level_ > 0 && level_ >= enough;
   const bool bumped = senses.bump > bump_noticed;
   if (stops_at_s_ < 0 && (as_trained || bumped)) {
     stops_at_s_ = time_s + parameters_.touch_reaction_s;
@@ -152,8 +155,7 @@ void Operator::move_on(double time_s, double period_s, const Senses& senses) noe
     plan(time_s, wanted_, wanted_ + missing, intent_.speed);
     return;
   }
-  const bool waits_for_feel =
-      intent_.stops_by_feel && stop_level_ > 0 && level_ < stop_level_ && stops_at_s_ < 0;
+  const bool waits_for_feel = intent_.stops_by_feel && level_ < clear_level_ && stops_at_s_ < 0;
   if (waits_for_feel) {
     creeping_ = true;
     const Vec3 along = (intent_.path_W.back() - intent_.path_W[intent_.path_W.size() - 2]);

@@ -41,8 +41,8 @@ struct OperatorParameters {
   // person has one number of each, drawn for each trial.
   double viscosity_weber[2] = {0.19, 0.34};
   double force_weber[2] = {0.07, 0.10};
-  /// s.d. of a level as judged against one that was learned, relative. Viscosity: 84 % right at 34 %
-  /// and 71 % right at 19 % (the same two) are both 0.34. Force: as much in relation.
+  /// s.d. of a level as judged against one that was learned, relative. Viscosity: 84 % right at 34
+  /// % and 71 % right at 19 % (the same two) are both 0.34. Force: as much in relation.
   double viscosity_spread = 0.34;
   double force_spread = 0.12;
   /// Least force that is noticed while the hand moves. Chosen; 0.1 to 0.5 N are reported.
@@ -120,7 +120,9 @@ class Operator {
   Training trained_;
   SeededNoise noise_;
   Vec3 aim_error_ = Vec3::Zero();
-  double weber_ = 0.3, stop_level_ = 0;
+  double weber_ = 0.3;
+  double stop_level_ = 0;   // where he takes what he feels for what he was trained to stop at
+  double clear_level_ = 0;  // below, he is sure that it is less
 
   // The motion under way: from, to, share of it done, rate of that share.
   std::size_t leg_ = 0;

@@ -17,7 +17,7 @@ namespace vicinity {
 namespace {
 
 constexpr int block = 25;  // trials that share what one cell needs to be set up
-constexpr double touch_cost_s = 10;
+constexpr double touch_cost_s = 2, speed_cost_s = 100;  // a touch, and for each m/s of it
 constexpr double noticeable_j = 1e-4;
 constexpr std::uint64_t tuning_operators = 1'000'000;  // none of them comes again in the study
 
@@ -143,24 +143,24 @@ std::vector<Tuning> tune(Runner& runner, const std::vector<Task>& tasks,
   return tunings;
 }
 
-void check(const StudyOptions& options, const std::vector<Task>& tasks) {
+}  // namespace
+
+void check(const StudyOptions& options) {
   const auto refuse = [](const char* what, const std::string& found, const char* expected) {
     throw Error({.where = "study", .what = what, .found = found, .expected = expected});
   };
   if (options.trials < 1 || options.trials > 100'000 || options.tuning_trials < 1) {
     refuse("that many trials cannot be made", std::to_string(options.trials), "1 to 100000");
   }
-  if (tasks.empty()) refuse("there is nothing to do", "no task", "one or more");
   for (const double delay : options.delays_s) {
     if (delay > 0 && delay <= 2) continue;
-    refuse("that is no delay", std::to_string(delay), "more than 0, up to 2 s");
+    refuse("that is no delay", std::to_string(delay) + " s", "more than 0, up to 2 s");
   }
+  (void)chosen(options);
 }
 
-}  // namespace
-
 double cost_of(const TrialResult& result) {
-  return result.time_s + (result.touched ? touch_cost_s : 0);
+  return result.time_s + (result.touched ? touch_cost_s + speed_cost_s * result.impact_speed : 0);
 }
 
 Summary summary_of(const std::vector<TrialResult>& trials) {
@@ -274,7 +274,7 @@ std::vector<Cell> cells_of(const std::vector<Task>& tasks, const std::vector<Met
 StudyResult run_study(const Workplace& place, const std::vector<Task>& tasks,
                       const StudyOptions& options) {
   constexpr double tuning_share = 0.15;
-  check(options, tasks);
+  check(options);
   std::vector<Method> tuned = chosen(options);
   Runner runner(place, tasks, options);
   StudyResult result;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "simulation/gantry.h"
 #include "simulation/study.h"
@@ -38,14 +39,18 @@ Condition delayed(double delay_s, Placement placement = Placement::remote) {
   return condition;
 }
 
-int touched(const Task& task, const Method& method, int trials, const Condition& condition = {}) {
-  Trial trial(block_workplace(), task, method, condition);
+// Mean speed of the touches, and how many there were.
+std::pair<double, int> touches(const Task& task, const Method& method, int trials) {
+  Trial trial(block_workplace(), task, method, {});
   const Training trained = trial.train();
+  double speed = 0;
   int count = 0;
-  for (int n = 0; n < trials; ++n) {
-    count += trial.run(seed_for(5, static_cast<std::uint64_t>(n)), trained).touched ? 1 : 0;
+  for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(trials); ++n) {
+    const TrialResult result = trial.run(seed_for(5, n), trained);
+    speed += result.impact_speed;
+    count += result.touched ? 1 : 0;
   }
-  return count;
+  return {speed / std::max(count, 1), count};
 }
 
 TEST(Trial, TheSameSeedIsTheSameTrialToTheBitAfterWhateverElse) {
@@ -82,9 +87,21 @@ TEST(Trial, WithoutAnAidTheBlindTouchAndSayHowHard) {
   EXPECT_LT(hits, 25);
 }
 
-TEST(Trial, AFittingDragTouchesLessThanNone) {
+// Not rarer: the hand still goes where the eye says. But what touches has lost its speed.
+TEST(Trial, WithDragATouchIsAQuarterAsFast) {
   const std::vector<Task> tasks = fitted();
-  EXPECT_LT(touched(tasks[0], with("rising", 2000), 40), touched(tasks[0], with("none", 0), 40));
+  const auto [speed, count] = touches(tasks[0], with("none", 0), 30);
+  ASSERT_GT(count, 5);
+  for (const char* name : {"all_I_none", "closing", "distance", "rising"}) {
+    EXPECT_LT(touches(tasks[0], with(name, 300), 30).first, 0.25 * speed) << name;
+  }
+}
+
+// A spring that is stiff enough keeps the hand off, as long as nothing is late.
+TEST(Trial, AStiffVirtualFixtureTouchesLessThanNone) {
+  const std::vector<Task> tasks = fitted();
+  EXPECT_LT(2 * touches(tasks[0], with("virtual_fixture", 800), 30).second,
+            touches(tasks[0], with("none", 0), 30).second);
 }
 
 TEST(Trial, RetreatIsFreeWithClosingAndNotWithThePapersDrag) {
@@ -123,16 +140,13 @@ TEST(Energy, StrictGivesNoneBeyondWhatTheDeviceEats) {
 // And the force field does.
 TEST(Energy, ADelayedForceFieldGivesMoreThanItHadTaken) {
   const std::vector<Task> tasks = fitted();
-  double last = 0;
-  for (const double delay_s : {0.05, 0.2}) {
+  for (const double delay_s : {0.05, 0.1, 0.2}) {
     double most = 0;
     Trial trial(block_workplace(), tasks[0], with("virtual_fixture", 800), delayed(delay_s));
     for (std::uint64_t n = 0; n < 10; ++n) {
       most = std::max(most, trial.run(seed_for(5, n), {Cue::force, 0}).given_j);
     }
     EXPECT_GT(most, 1e-3) << delay_s;
-    EXPECT_GT(most, last) << delay_s;
-    last = most;
   }
 }
 

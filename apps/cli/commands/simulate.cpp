@@ -199,6 +199,7 @@ StudyOptions study_options(const SimulateOptions& options) {
 int simulate(const SimulateOptions& options, std::ostream& out, std::ostream& err) {
   const auto start = std::chrono::steady_clock::now();
   StudyOptions study_wanted = study_options(options);
+  check(study_wanted);
   make_folder(options.folder / "recordings");
   auto bar = std::make_unique<ProgressBar>(err);
   bar->show("building the workplace", 0);

@@ -70,12 +70,18 @@ std::vector<Claim> claims_of(const StudyReport& report) {
   const Judge judge(report);
   std::vector<Claim> claims;
   const auto touched = &Summary::touched;
-  judge.lower(claims, "Paper: drag makes the operator stop before he touches", "approach",
-              "all_II_fading", "none", touched, 100, "% touched");
+  const auto impact = &Summary::impact_speed;
+  judge.lower(claims, "Paper: with drag one arrives slowly, so that a touch is no impact",
+              "approach", "all_II_fading", "none", impact, 1e3, "mm/s");
+  judge.lower(claims, "The same with ours", "approach", "rising", "none", impact, 1e3, "mm/s");
+  judge.lower(claims, "Paper: drag lets the operator perceive nearness, so that he touches less",
+              "approach", "all_II_fading", "none", touched, 100, "% touched");
+  judge.lower(claims, "The same with ours", "approach", "rising", "none", touched, 100,
+              "% touched");
   judge.lower(claims, "The same, passing between two parts", "pass", "all_II_fading", "none",
               touched, 100, "% touched");
-  judge.lower(claims, "Ours touches less than no aid", "approach", "rising", "none", touched, 100,
-              "% touched");
+  judge.lower(claims, "The same, passing between two parts, with ours", "pass", "rising", "none",
+              touched, 100, "% touched");
   judge.lower(claims, "Ours touches less than the paper's drag", "approach", "rising",
               "all_II_fading", touched, 100, "% touched");
   judge.lower(claims, "Paper: a part can be reached that a force field keeps one from", "insert",

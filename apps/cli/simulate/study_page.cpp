@@ -44,7 +44,8 @@ PagePicture intervals(const StudyReport& report, const std::filesystem::path& fi
       e = {factor * e.value, factor * e.low, factor * e.high};
       column.most = std::max(column.most, e.high);
       column.rows.push_back(e);
-      column.there.push_back(cell != nullptr);
+      // Speeds of touches are there where there were some.
+      column.there.push_back(cell && (what != &Summary::impact_speed || e.value > 0));
     }
     const double decade = std::pow(10, std::floor(std::log10(std::max(column.most, 1e-9))));
     column.most = std::ceil(column.most / decade * 2) / 2 * decade;
@@ -126,6 +127,9 @@ PageSection overview(const StudyReport& report, const std::filesystem::path& fol
   section.pictures.push_back(intervals(report, folder / "touched.svg", &Summary::touched, 100, " %",
                                        "Trials that touched",
                                        "Any contact of the arm with the workplace, by MuJoCo."));
+  section.pictures.push_back(intervals(report, folder / "impact.svg", &Summary::impact_speed, 1e3,
+                                       " mm/s", "Speed of the first touch",
+                                       "Along its normal, of the trials that touched."));
   section.pictures.push_back(intervals(report, folder / "time.svg", &Summary::time_s, 1, " s",
                                        "Time to finish",
                                        "Until the operator believed to be there."));
@@ -191,7 +195,8 @@ void write_study_page(const StudyReport& report, const std::filesystem::path& fo
          .says = fmt::format(
              "Each aid has one setting. Five values of it were tried on the first two tasks, {} "
              "trials each, with operators who do not come again; taken is the one of least cost: "
-             "seconds to finish, and ten for each touch. The operator is trained once with each "
+             "seconds to finish, two more for a touch and one for each 10 mm/s of its speed. The "
+             "operator is trained once with each "
              "aid "
              "and task: a slow and perfect approach.",
              report.options.tuning_trials)});
