@@ -9,12 +9,12 @@ set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 jobs=$(nproc)
 
-"$repository/scripts/install_packages.sh" --viewer --viewer-tests
+"$repository/scripts/install_packages.sh" --viewer --viewer-tests --simulation
 cd "$repository"
 
 for preset in release asan_ubsan; do
   echo "== $preset"
-  cmake --preset "$preset"
+  cmake --preset "$preset" -DVICINITY_SIMULATION=ON
   cmake --build --preset "$preset"
   ctest --preset "$preset" -j "$jobs"
 done

@@ -31,8 +31,7 @@ void draw_intervals(const std::vector<std::string>& rows,
     for (int part = 0; part <= 2; ++part) {
       const double at = left + column * part / 2;
       canvas.polyline({{at, head - 6}, {at, height - foot}}, {grid, 1, {}});
-      canvas.text(at, height - foot + 13,
-                  fmt::format("{:g}{}", each.most * part / 2, part == 2 ? each.unit : ""), 8.5,
+      canvas.text(at, height - foot + 13, fmt::format("{:g}", each.most * part / 2), 8.5,
                   part == 2   ? Canvas::Anchor::right
                   : part == 0 ? Canvas::Anchor::left
                               : Canvas::Anchor::middle,

@@ -37,7 +37,7 @@ PagePicture intervals(const StudyReport& report, const std::filesystem::path& fi
   }
   std::vector<IntervalColumn> columns;
   for (std::size_t task = 0; task < report.tasks.size(); ++task) {
-    IntervalColumn column{report.tasks[task].name, 0, unit, {}, {}};
+    IntervalColumn column{report.tasks[task].name, 0, {}, {}};
     for (const std::string& name : names) {
       const CellResult* const cell = cell_of(report, task, name);
       Estimate e = cell ? cell->summary.*what : Estimate{};
@@ -52,7 +52,7 @@ PagePicture intervals(const StudyReport& report, const std::filesystem::path& fi
     columns.push_back(std::move(column));
   }
   draw_intervals(names, columns, file);
-  return {file, title, says};
+  return {file, title + " [" + unit + "]", says};
 }
 
 // One line an aid, over delay; the value without delay from the table of tasks.
@@ -124,19 +124,19 @@ PageSection overview(const StudyReport& report, const std::filesystem::path& fol
                       .says =
                           "No delay. Squares are shares or "
                           "means, whiskers their 95 % ranges."};
-  section.pictures.push_back(intervals(report, folder / "touched.svg", &Summary::touched, 100, " %",
+  section.pictures.push_back(intervals(report, folder / "touched.svg", &Summary::touched, 100, "%",
                                        "Trials that touched",
                                        "Any contact of the arm with the workplace, by MuJoCo."));
   section.pictures.push_back(intervals(report, folder / "impact.svg", &Summary::impact_speed, 1e3,
-                                       " mm/s", "Speed of the first touch",
+                                       "mm/s", "Speed of the first touch",
                                        "Along its normal, of the trials that touched."));
-  section.pictures.push_back(intervals(report, folder / "time.svg", &Summary::time_s, 1, " s",
+  section.pictures.push_back(intervals(report, folder / "time.svg", &Summary::time_s, 1, "s",
                                        "Time to finish",
                                        "Until the operator believed to be there."));
-  section.pictures.push_back(intervals(report, folder / "effort.svg", &Summary::effort, 1, " N·s",
+  section.pictures.push_back(intervals(report, folder / "effort.svg", &Summary::effort, 1, "N·s",
                                        "Effort of the hand", "Force over time."));
   section.pictures.push_back(intervals(report, folder / "clearance.svg", &Summary::clearance_m, 1e3,
-                                       " mm", "Smallest clearance",
+                                       "mm", "Smallest clearance",
                                        "Of any body point of the slave, in the mean."));
   return section;
 }

@@ -11,12 +11,12 @@ namespace vicinity::cli {
 namespace {
 
 std::string share(const Estimate& e) {
-  return fmt::format("{:.0f} % ({:.0f}-{:.0f})", 100 * e.value, 100 * e.low, 100 * e.high);
+  return fmt::format("{:.0f}\u00a0% ({:.0f}–{:.0f})", 100 * e.value, 100 * e.low, 100 * e.high);
 }
 
 std::string ranged(const Estimate& e, double factor, int digits) {
-  return fmt::format("{:.{}f} ± {:.{}f}", factor * e.value, digits, factor * (e.high - e.value),
-                     digits);
+  return fmt::format("{:.{}f}\u00a0±\u00a0{:.{}f}", factor * e.value, digits,
+                     factor * (e.high - e.value), digits);
 }
 
 // Of those that touched; nothing where none did.
