@@ -177,7 +177,7 @@ TEST_F(Replay, InRealTimeEveryMissIsCountedOnceAndHasACause) {
 TEST_F(Replay, InterruptedItLeavesWholeLinesOfWhatItHas) {
   const pid_t process =
       folder_->start(arguments("log.csv", {"-o", "cut.csv", "--realtime", "--duration", "300"}));
-  const timespec a_while{.tv_sec = 1, .tv_nsec = 0};
+  const timespec a_while{.tv_sec = 3, .tv_nsec = 0};  // a sanitized program starts slowly
   nanosleep(&a_while, nullptr);
   kill(process, SIGINT);
   EXPECT_EQ(wait_for(process), 130);
