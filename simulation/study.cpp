@@ -3,6 +3,7 @@
 
 #include "simulation/study.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -20,6 +21,10 @@ constexpr int block = 25;  // trials that share what one cell needs to be set up
 constexpr double touch_cost_s = 2, speed_cost_s = 100;  // a touch, and for each m/s of it
 constexpr double noticeable_j = 1e-4;
 constexpr std::uint64_t tuning_operators = 1'000'000;  // none of them comes again in the study
+
+struct Tally {
+  int trials = 0, touched = 0;
+};
 
 // Trials of many cells, on all threads; results lie where they belong.
 class Runner {
@@ -41,6 +46,7 @@ class Runner {
       for (std::size_t b = 0; b < blocks; ++b) units.push_back(c * blocks + b);
     }
     done_ = 0;
+    std::vector<Tally> tallies(cells.size());
     const std::size_t all = cells.size() + units.size();
     each(cells.size(), [&](std::size_t c) {
       Trial trial(place_, tasks_[cells[c].task], cells[c].method, cells[c].condition);
@@ -52,11 +58,14 @@ class Runner {
       const Cell& cell = cells[c];
       Trial trial(place_, tasks_[cell.task], cell.method, cell.condition);
       const std::size_t last = std::min(first + block, static_cast<std::size_t>(trials));
+      Tally ran;
       for (std::size_t n = first; n < last && !stopped(); ++n) {
         results[c].trials[n] =
             trial.run(seed_for(options_.seed, operators + n), results[c].trained);
+        ++ran.trials;
+        ran.touched += results[c].trials[n].touched ? 1 : 0;
       }
-      show(tasks_[cell.task].name + ", " + cell.method.name, from, to, all);
+      show(so_far(cell, ran, tallies[c]), from, to, all);
     });
     for (CellResult& result : results) result.summary = summary_of(result.trials);
     return results;
@@ -75,6 +84,15 @@ class Runner {
         if (!stopped()) work(n);
       });
     });
+  }
+
+  // What a cell says with these trials more.
+  std::string so_far(const Cell& cell, const Tally& ran, Tally& tally) {
+    const std::lock_guard lock(mutex_);
+    tally.trials += ran.trials;
+    tally.touched += ran.touched;
+    return fmt::format("{}, {}: {} of {} touched", tasks_[cell.task].name, cell.method.name,
+                       tally.touched, tally.trials);
   }
 
   void show(std::string_view what, double from, double to, std::size_t all) {

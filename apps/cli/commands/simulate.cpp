@@ -175,6 +175,13 @@ std::string command_of(const SimulateOptions& options) {
   if (!options.arm.base.empty()) command += " --base " + options.arm.base;
   if (!options.tasks.empty()) command += " --tasks " + options.tasks.string();
   if (!options.methods.empty()) command += " --method " + options.methods;
+  const SimulateOptions usual;
+  for (const auto& folder : options.arm.packages) command += " --packages " + folder.string();
+  if (!options.arm.exclude.empty()) command += " --exclude " + options.arm.exclude;
+  if (!options.arm.tool.empty()) command += " --tool " + options.arm.tool;
+  if (!options.meshes.empty()) command += " --meshes " + options.meshes.string();
+  if (options.delays_ms != usual.delays_ms) command += " --delays " + options.delays_ms;
+  if (options.step_ms != usual.step_ms) command += fmt::format(" --step-ms {:g}", options.step_ms);
   return command + fmt::format(" --trials {} --seed {} -o DIR", options.trials, options.seed);
 }
 
