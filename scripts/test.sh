@@ -9,7 +9,7 @@ set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 jobs=$(nproc)
 
-"$repository/scripts/install_packages.sh" --viewer --viewer-tests --simulation
+"$repository/scripts/install_packages.sh" --viewer --viewer-tests
 cd "$repository"
 
 for preset in release asan_ubsan; do

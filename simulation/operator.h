@@ -58,10 +58,14 @@ struct OperatorParameters {
   double tolerance_m = 0.006;     ///< what is seen as there
 
   // What he does with what he feels. Chosen.
-  double caution = 0.6;       ///< each noticed rise of resistance slows the motion by this
-  double least_pace = 0.2;    ///< and never below this share of the intended one
-  double creep_speed = 0.04;  ///< on, where sight says "there" and the hand does not yet [m/s]
-  double creep_most = 2;      ///< for so many s.d. of the depth error
+  double caution = 0.6;         ///< each noticed rise of resistance slows the motion by this
+  double least_pace = 0.2;      ///< and never below this share of the intended one
+  double creep_speed = 0.04;    ///< on, where sight says "there" and the hand does not yet [m/s]
+  double creep_most = 2;        ///< for so many s.d. of the depth error
+  int most_corrections = 8;     ///< by sight, before he takes it for there
+  double felt_over_s = 0.03;    ///< resistance is felt as its mean over so long
+  double slowest_felt = 0.005;  ///< slower than that, force by speed says nothing [m/s]
+  double bump = 1;  ///< reflected contact that is not taken for inertia, and stops him [N]
 };
 
 /// What the operator wants.

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -19,6 +20,14 @@ namespace vicinity {
 namespace {
 
 using testing::HasSubstr;
+
+// Under the sanitizers a trial takes several times as long: one of the paper's and one of ours then
+// stand for all, because their code is the same.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::array drags = {"all_II_fading", "rising"};
+#else
+constexpr std::array drags = {"all_I_none", "all_II_fading", "closing", "distance", "rising"};
+#endif
 
 std::vector<Task> fitted() {
   std::vector<Task> tasks = block_tasks();
@@ -92,7 +101,7 @@ TEST(Trial, WithDragATouchIsAQuarterAsFast) {
   const std::vector<Task> tasks = fitted();
   const auto [speed, count] = touches(tasks[0], with("none", 0), 30);
   ASSERT_GT(count, 5);
-  for (const char* name : {"all_I_none", "closing", "distance", "rising"}) {
+  for (const char* name : drags) {
     EXPECT_LT(touches(tasks[0], with(name, 300), 30).first, 0.25 * speed) << name;
   }
 }
@@ -118,7 +127,7 @@ TEST(Trial, RetreatIsFreeWithClosingAndNotWithThePapersDrag) {
 // Must hold: no configuration in strict mode puts energy into the hand at any delay tried.
 TEST(Energy, StrictGivesNoneBeyondWhatTheDeviceEats) {
   const std::vector<Task> tasks = fitted();
-  for (const char* name : {"all_I_none", "all_II_fading", "closing", "distance", "rising"}) {
+  for (const char* name : drags) {
     for (const double delay_s : {0.0, 0.02, 0.05, 0.1, 0.2}) {
       for (const Placement placement : {Placement::local, Placement::remote}) {
         Method method = with(name, 5000);

@@ -229,11 +229,11 @@ int simulate(const SimulateOptions& options, std::ostream& out, std::ostream& er
     urdf = "arm.urdf";
   }
   const Vec3 at = prepared.place.X_WB.translation();
-  const Vec3 turn = prepared.place.X_WB.linear().eulerAngles(2, 1, 0);
+  // Plus zero: minus zero is not how a person would write it.
+  const Vec3 turn = prepared.place.X_WB.linear().eulerAngles(2, 1, 0) + Vec3::Zero();
   report.replay = fmt::format(
       "vicinity replay field.vicinity --robot {} --base {:g},{:g},{:g},{:g},{:g},{:g} --trajectory "
-      "{} "
-      "-o felt.csv --plot felt.png",
+      "{} -o felt.csv --plot felt.png",
       urdf, at.x(), at.y(), at.z(), turn[2], turn[1], turn[0],
       report.recordings.empty() ? "LOG.csv" : report.recordings.front());
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

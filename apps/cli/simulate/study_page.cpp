@@ -111,7 +111,7 @@ PageSection claims(const StudyReport& report) {
     section.notes.push_back({open    ? "Not shown"
                              : holds ? "Holds"
                                      : "Does not hold",
-                             claim.claim + ". " + claim.measured + ".",
+                             claim.claim + ": " + claim.measured + ".",
                              open    ? Tone::plain
                              : holds ? Tone::good
                                      : Tone::bad});
