@@ -23,7 +23,8 @@ for ((n = 1; n < $#; ++n)); do
 done
 
 "$repository/scripts/install_packages.sh" "${packages[@]}"
-cmake -S "$repository" --preset release >/dev/null
+# The study of operators is not part of it.
+cmake -S "$repository" --preset release -DVICINITY_SIMULATION=OFF >/dev/null
 cmake --build "$repository/build/release" --target vicinity_cli
 vicinity=$repository/build/release/apps/cli/vicinity
 "$vicinity" demo "$@"

@@ -17,6 +17,7 @@ packages=(
   libcli11-dev                       # command line
   libcairo2-dev fonts-dejavu-core    # pictures
   libembree-dev                      # the report's measured peer: nearest surface by a tree
+  libmujoco-dev libqhull-dev         # vicinity simulate; the first is not found without the second
   libopenvdb-dev libboost-iostreams-dev # export to .vdb
   libgtest-dev libgmock-dev          # tests
   liburdfdom-dev liborocos-kdl-dev   # tests: robots and kinematics by another route
@@ -24,7 +25,6 @@ packages=(
 # What only some need:
 #   --benchmarks     the benchmarks
 #   --peers          the benchmarks, and what scripts/bench.sh measures us beside (150 MB)
-#   --simulation     what VICINITY_SIMULATION needs
 #   --viewer         the viewer's page, which npm builds; without it vicinity serve has no page
 #   --viewer-tests   a browser (700 MB) for the tests that look at the page, and for serve --shot
 # Node, npm and a browser that came from elsewhere will do.
@@ -33,11 +33,9 @@ for flag in "$@"; do
     --benchmarks) packages+=(libbenchmark-dev) ;;
     --peers) packages+=(libbenchmark-dev libnanovdb-dev libfcl-dev libcgal-dev liboctomap-dev
                         libdynamicedt3d-dev python3-scipy) ;;
-    # The first cannot be found without the second.
-    --simulation) packages+=(libmujoco-dev libqhull-dev) ;;
     --viewer) command -v npm >/dev/null || packages+=(nodejs npm) ;;
     --viewer-tests) command -v chromium >/dev/null || packages+=(chromium) ;;
-    *) echo "install_packages.sh: there is no $flag; --benchmarks, --peers, --simulation, --viewer, --viewer-tests" >&2; exit 2 ;;
+    *) echo "install_packages.sh: there is no $flag; --benchmarks, --peers, --viewer, --viewer-tests" >&2; exit 2 ;;
   esac
 done
 

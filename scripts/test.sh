@@ -14,7 +14,7 @@ cd "$repository"
 
 for preset in release asan_ubsan; do
   echo "== $preset"
-  cmake --preset "$preset"
+  cmake --preset "$preset" -DVICINITY_SIMULATION=ON
   cmake --build --preset "$preset"
   ctest --preset "$preset" -j "$jobs"
 done

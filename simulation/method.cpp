@@ -36,7 +36,7 @@ std::vector<Method> all_methods() {
                  .says = "slowed by distance, in every direction (MoveIt Servo)",
                  .kind = MethodKind::scaling,
                  .setting_name = "threshold [m]",
-                 .tried = {0.01, 0.02, 0.04, 0.06, 0.09}});
+                 .tried = {0.005, 0.01, 0.02, 0.04, 0.08}});
   const std::vector<double> gains = {30, 100, 300, 1000, 3000};
   const auto drag = [&](std::string name, std::string says, std::string coding, std::string memory,
                         DragDirection direction, bool keeps_distance) {

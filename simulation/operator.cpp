@@ -10,10 +10,6 @@ namespace vicinity {
 namespace {
 
 constexpr double never = -1;
-constexpr double slowest_felt = 0.005;     // below, force by speed says nothing [m/s]
-constexpr double level_constant_s = 0.03;  // resistance is felt over some tens of milliseconds
-constexpr int most_corrections = 8;
-constexpr double bump_noticed = 1;  // reflected contact that is not taken for inertia [N]
 
 // Least jerk from 0 to 1, and its rate (Flash & Hogan 1985).
 double least_jerk(double s) noexcept { return s * s * s * (10 + s * (6 * s - 15)); }
@@ -37,10 +33,11 @@ Operator::Operator(const OperatorParameters& parameters, const Intent& intent,
   const double spread =
       trained.cue == Cue::force ? parameters.force_spread : parameters.viscosity_spread;
   stop_level_ = trained.level * std::exp(spread * error);
+  clear_level_ = stop_level_ * std::exp(-spread);
   reference_ = trained.cue == Cue::force ? parameters.least_force : parameters.own_resistance;
   if (trained.cue == Cue::viscosity) level_ = parameters.own_resistance;
   // Too little to be told from nothing is not gone by.
-  if (trained.level < reference_ * (1 + weber_)) stop_level_ = 0;
+  if (trained.level < reference_ * (1 + weber_)) stop_level_ = clear_level_ = 0;
 }
 
 Vec3 Operator::act(double time_s, double period_s, const Senses& senses) noexcept {
@@ -72,11 +69,11 @@ void Operator::feel(double time_s, double period_s, const Senses& senses) noexce
   double now = level_;
   if (trained_.cue == Cue::force) {
     now = senses.felt.norm();
-  } else if (trained_.cue == Cue::viscosity && speed > slowest_felt) {
+  } else if (trained_.cue == Cue::viscosity && speed > parameters_.slowest_felt) {
     const double against = std::max(0.0, -senses.felt.dot(senses.velocity) / speed);
     now = parameters_.own_resistance + (against > parameters_.least_force ? against / speed : 0.0);
   }
-  level_ += (now - level_) * std::min(1.0, period_s / level_constant_s);
+  level_ += (now - level_) * std::min(1.0, period_s / parameters_.felt_over_s);
   if (trained_.cue == Cue::none) return;
   if (level_ > reference_ * (1 + weber_)) {
     reference_ = level_;
@@ -88,8 +85,10 @@ void Operator::feel(double time_s, double period_s, const Senses& senses) noexce
     if (notices_at_s_ < 0) notices_at_s_ = time_s + parameters_.touch_reaction_s;
     --pending_;
   }
-  const bool as_trained = intent_.stops_by_feel && stop_level_ > 0 && level_ >= stop_level_;
-  const bool bumped = senses.bump > bump_noticed;
+  // Who creeps on against what he sees stops as soon as he is no longer sure that it is less.
+  const double enough = creeping_ ? clear_level_ : stop_level_;
+  const bool as_trained = intent_.stops_by_feel && stop_level_ > 0 && level_ >= enough;
+  const bool bumped = senses.bump > parameters_.bump;
   if (stops_at_s_ < 0 && (as_trained || bumped)) {
     stops_at_s_ = time_s + parameters_.touch_reaction_s;
   }
@@ -147,13 +146,12 @@ void Operator::move_on(double time_s, double period_s, const Senses& senses) noe
     return;
   }
   const Vec3 missing = intent_.path_W.back() + aim_error_ - senses.seen_tool;
-  if (missing.norm() > parameters_.tolerance_m && corrections_ < most_corrections) {
+  if (missing.norm() > parameters_.tolerance_m && corrections_ < parameters_.most_corrections) {
     ++corrections_;
     plan(time_s, wanted_, wanted_ + missing, intent_.speed);
     return;
   }
-  const bool waits_for_feel =
-      intent_.stops_by_feel && stop_level_ > 0 && level_ < stop_level_ && stops_at_s_ < 0;
+  const bool waits_for_feel = intent_.stops_by_feel && level_ < clear_level_ && stops_at_s_ < 0;
   if (waits_for_feel) {
     creeping_ = true;
     const Vec3 along = (intent_.path_W.back() - intent_.path_W[intent_.path_W.size() - 2]);

@@ -41,8 +41,8 @@ struct OperatorParameters {
   // person has one number of each, drawn for each trial.
   double viscosity_weber[2] = {0.19, 0.34};
   double force_weber[2] = {0.07, 0.10};
-  /// s.d. of a level as judged against one that was learned, relative. Viscosity: 84 % right at 34 %
-  /// and 71 % right at 19 % (the same two) are both 0.34. Force: as much in relation.
+  /// s.d. of a level as judged against one that was learned, relative. Viscosity: 84 % right at 34
+  /// % and 71 % right at 19 % (the same two) are both 0.34. Force: as much in relation.
   double viscosity_spread = 0.34;
   double force_spread = 0.12;
   /// Least force that is noticed while the hand moves. Chosen; 0.1 to 0.5 N are reported.
@@ -58,10 +58,14 @@ struct OperatorParameters {
   double tolerance_m = 0.006;     ///< what is seen as there
 
   // What he does with what he feels. Chosen.
-  double caution = 0.6;       ///< each noticed rise of resistance slows the motion by this
-  double least_pace = 0.2;    ///< and never below this share of the intended one
-  double creep_speed = 0.04;  ///< on, where sight says "there" and the hand does not yet [m/s]
-  double creep_most = 2;      ///< for so many s.d. of the depth error
+  double caution = 0.6;         ///< each noticed rise of resistance slows the motion by this
+  double least_pace = 0.2;      ///< and never below this share of the intended one
+  double creep_speed = 0.04;    ///< on, where sight says "there" and the hand does not yet [m/s]
+  double creep_most = 2;        ///< for so many s.d. of the depth error
+  int most_corrections = 8;     ///< by sight, before he takes it for there
+  double felt_over_s = 0.03;    ///< resistance is felt as its mean over so long
+  double slowest_felt = 0.005;  ///< slower than that, force by speed says nothing [m/s]
+  double bump = 1;  ///< reflected contact that is not taken for inertia, and stops him [N]
 };
 
 /// What the operator wants.
@@ -120,7 +124,9 @@ class Operator {
   Training trained_;
   SeededNoise noise_;
   Vec3 aim_error_ = Vec3::Zero();
-  double weber_ = 0.3, stop_level_ = 0;
+  double weber_ = 0.3;
+  double stop_level_ = 0;   // where he takes what he feels for what he was trained to stop at
+  double clear_level_ = 0;  // below, he is sure that it is less
 
   // The motion under way: from, to, share of it done, rate of that share.
   std::size_t leg_ = 0;

@@ -3,6 +3,7 @@
 
 #include "simulation/study.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -17,9 +18,13 @@ namespace vicinity {
 namespace {
 
 constexpr int block = 25;  // trials that share what one cell needs to be set up
-constexpr double touch_cost_s = 10;
+constexpr double touch_cost_s = 2, speed_cost_s = 100;  // a touch, and for each m/s of it
 constexpr double noticeable_j = 1e-4;
 constexpr std::uint64_t tuning_operators = 1'000'000;  // none of them comes again in the study
+
+struct Tally {
+  int trials = 0, touched = 0;
+};
 
 // Trials of many cells, on all threads; results lie where they belong.
 class Runner {
@@ -41,6 +46,7 @@ class Runner {
       for (std::size_t b = 0; b < blocks; ++b) units.push_back(c * blocks + b);
     }
     done_ = 0;
+    std::vector<Tally> tallies(cells.size());
     const std::size_t all = cells.size() + units.size();
     each(cells.size(), [&](std::size_t c) {
       Trial trial(place_, tasks_[cells[c].task], cells[c].method, cells[c].condition);
@@ -52,11 +58,14 @@ class Runner {
       const Cell& cell = cells[c];
       Trial trial(place_, tasks_[cell.task], cell.method, cell.condition);
       const std::size_t last = std::min(first + block, static_cast<std::size_t>(trials));
+      Tally ran;
       for (std::size_t n = first; n < last && !stopped(); ++n) {
         results[c].trials[n] =
             trial.run(seed_for(options_.seed, operators + n), results[c].trained);
+        ++ran.trials;
+        ran.touched += results[c].trials[n].touched ? 1 : 0;
       }
-      show(tasks_[cell.task].name + ", " + cell.method.name, from, to, all);
+      show(so_far(cell, ran, tallies[c]), from, to, all);
     });
     for (CellResult& result : results) result.summary = summary_of(result.trials);
     return results;
@@ -75,6 +84,15 @@ class Runner {
         if (!stopped()) work(n);
       });
     });
+  }
+
+  // What a cell says with these trials more.
+  std::string so_far(const Cell& cell, const Tally& ran, Tally& tally) {
+    const std::lock_guard lock(mutex_);
+    tally.trials += ran.trials;
+    tally.touched += ran.touched;
+    return fmt::format("{}, {}: {} of {} touched", tasks_[cell.task].name, cell.method.name,
+                       tally.touched, tally.trials);
   }
 
   void show(std::string_view what, double from, double to, std::size_t all) {
@@ -143,24 +161,24 @@ std::vector<Tuning> tune(Runner& runner, const std::vector<Task>& tasks,
   return tunings;
 }
 
-void check(const StudyOptions& options, const std::vector<Task>& tasks) {
+}  // namespace
+
+void check(const StudyOptions& options) {
   const auto refuse = [](const char* what, const std::string& found, const char* expected) {
     throw Error({.where = "study", .what = what, .found = found, .expected = expected});
   };
   if (options.trials < 1 || options.trials > 100'000 || options.tuning_trials < 1) {
     refuse("that many trials cannot be made", std::to_string(options.trials), "1 to 100000");
   }
-  if (tasks.empty()) refuse("there is nothing to do", "no task", "one or more");
   for (const double delay : options.delays_s) {
     if (delay > 0 && delay <= 2) continue;
-    refuse("that is no delay", std::to_string(delay), "more than 0, up to 2 s");
+    refuse("that is no delay", std::to_string(delay) + " s", "more than 0, up to 2 s");
   }
+  (void)chosen(options);
 }
 
-}  // namespace
-
 double cost_of(const TrialResult& result) {
-  return result.time_s + (result.touched ? touch_cost_s : 0);
+  return result.time_s + (result.touched ? touch_cost_s + speed_cost_s * result.impact_speed : 0);
 }
 
 Summary summary_of(const std::vector<TrialResult>& trials) {
@@ -274,7 +292,7 @@ std::vector<Cell> cells_of(const std::vector<Task>& tasks, const std::vector<Met
 StudyResult run_study(const Workplace& place, const std::vector<Task>& tasks,
                       const StudyOptions& options) {
   constexpr double tuning_share = 0.15;
-  check(options, tasks);
+  check(options);
   std::vector<Method> tuned = chosen(options);
   Runner runner(place, tasks, options);
   StudyResult result;

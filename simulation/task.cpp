@@ -144,7 +144,7 @@ std::optional<AxisVector> solved(const Workplace& place, const Vec3& p_WT,
 // weight how far it stays from where it cannot move in some direction. Below zero where it cannot
 // go it.
 double ease_of_the_way(const Workplace& place, const Task& task, const AxisVector& q) {
-  constexpr double step_m = 0.002;
+  constexpr double step_m = 0.0005;  // of 0.5 m/s at 1 kHz
   Lead lead(place.robot, AxisKind::cartesian, place.tool_link, place.X_WB);
   AxisVector x = task.intent.path_W.front();
   lead.start(q, x);
@@ -162,7 +162,7 @@ double ease_of_the_way(const Workplace& place, const Task& task, const AxisVecto
       if ((lead.p_WT() - Vec3(x)).norm() > 0.002) return -1;
       if ((lead.q() - last).cwiseAbs().maxCoeff() > 0.1) return -1;
       last = lead.q();
-      if (n % 5 != 0) continue;
+      if (n % 20 != 0 && n < steps) continue;
       distance.look(lead.q().data(), place.X_WB);
       if (const NearPoint* nearest = distance.nearest()) {
         room = std::min(room, nearest->distance_m);
@@ -254,17 +254,17 @@ std::vector<Task> tasks_for(const Workplace& place, std::uint64_t seed) {
     distance.look(q.data(), place.X_WB);
     const auto tool = static_cast<std::size_t>(place.tool_link);
     const Pose X_WT = distance.kinematics().X_WL(tool);
-    const FieldSample here = place.distance.at(X_WT.translation());
     const NearPoint* const nearest = distance.nearest();
-    if (here.distance_m < stand_off || nearest == nullptr || nearest->distance_m < 0.005) continue;
-    const Vec3 towards_W = towards_surface(place.distance, X_WT.translation());
+    if (nearest == nullptr || nearest->distance_m < stand_off) continue;
+    const FieldSample here = place.distance.at(nearest->p_W);
+    const Vec3 towards_W = towards_surface(place.distance, nearest->p_W);
     if (towards_W.dot(X_WT.linear().col(2)) < 0.7) continue;
     if (std::find(taken.begin(), taken.end(), here.record.object) != taken.end()) continue;
     const std::string& object = place.distance.objects()[here.record.object].name;
     Task task;
     task.name = "approach_" + object;
     task.says = "stop 20 mm before '" + object + "'";
-    const Vec3 goal = X_WT.translation() + (here.distance_m - stand_off) * towards_W;
+    const Vec3 goal = X_WT.translation() + (nearest->distance_m - stand_off) * towards_W;
     task.intent.path_W = {goal - run_up * towards_W, goal};
     task.intent.sight_W = towards_W;  // no camera: depth is what is not known
     task.intent.stops_by_feel = true;

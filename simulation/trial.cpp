@@ -40,6 +40,15 @@ LoopOptions loop_options(const Workplace& place, const Condition& condition) {
   return options;
 }
 
+// How far off a surface is still known: what is farther away has no distance [m].
+double reach_of(const ViscosityField& field) {
+  double reach = 0;
+  for (const FieldObject& object : field.objects()) {
+    reach = std::max(reach, object.m * object.q * field.workspace().voxel_size);
+  }
+  return reach;
+}
+
 // What comes late: the picture of the tool, and the bump of a contact.
 class Late {
  public:
@@ -145,7 +154,7 @@ TrialResult Trial::go(const OperatorParameters& person, const Intent& intent,
   late.fill(p_tool);
 
   TrialResult result;
-  result.clearance_m = HUGE_VAL;
+  result.clearance_m = reach_of(place_.distance);
   AxisVector q_led = task_.q_start, qd_led = still;
   Senses senses;
   double done_at = -1;

@@ -33,6 +33,7 @@ pre { font: 14px/1.5 "DejaVu Sans Mono", Menlo, Consolas, monospace; background:
 table { border-collapse: collapse; font-size: .88rem; margin: 1rem 0; }
 th, td { text-align: left; padding: .25rem 1.2rem .25rem 0; border-bottom: 1px solid #d5dade; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
+td.short { white-space: nowrap; }
 dl { display: grid; grid-template-columns: max-content minmax(0, 46rem); gap: .4rem 1.2rem;
      margin: 1rem 0; }
 dt { color: #454d55; }
@@ -126,6 +127,9 @@ bool is_number(const std::string& cell) {
   return !cell.empty() && cell.find_first_not_of("0123456789,.") == std::string::npos;
 }
 
+// Cells of fewer bytes are not broken into lines.
+constexpr std::size_t whole_below = 24;
+
 std::string table(const std::vector<std::vector<std::string>>& rows) {
   std::string html = "<table>\n";
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -134,8 +138,12 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
       const std::string tag = r == 0 ? "th" : "td";
       // A column of numbers is one whose first number is one.
       const bool number = rows.size() > 1 && is_number(rows[1][c]);
-      html += '<' + tag + (number ? " class=\"number\">" : ">") + escaped(rows[r][c]) + "</" + tag +
-              '>';
+      const bool brief = r > 0 && rows[r][c].size() < whole_below;
+      html += '<' + tag +
+              (number  ? " class=\"number\">"
+               : brief ? " class=\"short\">"
+                       : ">") +
+              escaped(rows[r][c]) + "</" + tag + '>';
     }
     html += "</tr>\n";
   }

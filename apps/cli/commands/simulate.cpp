@@ -175,6 +175,13 @@ std::string command_of(const SimulateOptions& options) {
   if (!options.arm.base.empty()) command += " --base " + options.arm.base;
   if (!options.tasks.empty()) command += " --tasks " + options.tasks.string();
   if (!options.methods.empty()) command += " --method " + options.methods;
+  const SimulateOptions usual;
+  for (const auto& folder : options.arm.packages) command += " --packages " + folder.string();
+  if (!options.arm.exclude.empty()) command += " --exclude " + options.arm.exclude;
+  if (!options.arm.tool.empty()) command += " --tool " + options.arm.tool;
+  if (!options.meshes.empty()) command += " --meshes " + options.meshes.string();
+  if (options.delays_ms != usual.delays_ms) command += " --delays " + options.delays_ms;
+  if (options.step_ms != usual.step_ms) command += fmt::format(" --step-ms {:g}", options.step_ms);
   return command + fmt::format(" --trials {} --seed {} -o DIR", options.trials, options.seed);
 }
 
@@ -199,6 +206,7 @@ StudyOptions study_options(const SimulateOptions& options) {
 int simulate(const SimulateOptions& options, std::ostream& out, std::ostream& err) {
   const auto start = std::chrono::steady_clock::now();
   StudyOptions study_wanted = study_options(options);
+  check(study_wanted);
   make_folder(options.folder / "recordings");
   auto bar = std::make_unique<ProgressBar>(err);
   bar->show("building the workplace", 0);
@@ -221,11 +229,11 @@ int simulate(const SimulateOptions& options, std::ostream& out, std::ostream& er
     urdf = "arm.urdf";
   }
   const Vec3 at = prepared.place.X_WB.translation();
-  const Vec3 turn = prepared.place.X_WB.linear().eulerAngles(2, 1, 0);
+  // Plus zero: minus zero is not how a person would write it.
+  const Vec3 turn = prepared.place.X_WB.linear().eulerAngles(2, 1, 0) + Vec3::Zero();
   report.replay = fmt::format(
       "vicinity replay field.vicinity --robot {} --base {:g},{:g},{:g},{:g},{:g},{:g} --trajectory "
-      "{} "
-      "-o felt.csv --plot felt.png",
+      "{} -o felt.csv --plot felt.png",
       urdf, at.x(), at.y(), at.z(), turn[2], turn[1], turn[0],
       report.recordings.empty() ? "LOG.csv" : report.recordings.front());
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

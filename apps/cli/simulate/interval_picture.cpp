@@ -28,11 +28,14 @@ void draw_intervals(const std::vector<std::string>& rows,
       return left + column * std::clamp(value / each.most, 0.0, 1.0);
     };
     canvas.text(left, head - 14, each.title, 10.5, Canvas::Anchor::left, ink);
+    if (std::find(each.there.begin(), each.there.end(), true) == each.there.end()) {
+      canvas.text(left + column / 2, height / 2, "none", 8.5, Canvas::Anchor::middle, ink);
+      continue;
+    }
     for (int part = 0; part <= 2; ++part) {
       const double at = left + column * part / 2;
       canvas.polyline({{at, head - 6}, {at, height - foot}}, {grid, 1, {}});
-      canvas.text(at, height - foot + 13,
-                  fmt::format("{:g}{}", each.most * part / 2, part == 2 ? each.unit : ""), 8.5,
+      canvas.text(at, height - foot + 13, fmt::format("{:g}", each.most * part / 2), 8.5,
                   part == 2   ? Canvas::Anchor::right
                   : part == 0 ? Canvas::Anchor::left
                               : Canvas::Anchor::middle,

@@ -14,8 +14,7 @@ namespace vicinity::cli {
 
 struct IntervalColumn {
   std::string title;
-  double most = 1;  ///< right end of the axis
-  std::string unit;
+  double most = 1;             ///< right end of the axis
   std::vector<Estimate> rows;  ///< one for each row name
   std::vector<bool> there;     ///< whether there is a number
 };

@@ -37,21 +37,22 @@ PagePicture intervals(const StudyReport& report, const std::filesystem::path& fi
   }
   std::vector<IntervalColumn> columns;
   for (std::size_t task = 0; task < report.tasks.size(); ++task) {
-    IntervalColumn column{report.tasks[task].name, 0, unit, {}, {}};
+    IntervalColumn column{report.tasks[task].name, 0, {}, {}};
     for (const std::string& name : names) {
       const CellResult* const cell = cell_of(report, task, name);
       Estimate e = cell ? cell->summary.*what : Estimate{};
       e = {factor * e.value, factor * e.low, factor * e.high};
       column.most = std::max(column.most, e.high);
       column.rows.push_back(e);
-      column.there.push_back(cell != nullptr);
+      // Speeds of touches are there where there were some.
+      column.there.push_back(cell && (what != &Summary::impact_speed || e.value > 0));
     }
     const double decade = std::pow(10, std::floor(std::log10(std::max(column.most, 1e-9))));
     column.most = std::ceil(column.most / decade * 2) / 2 * decade;
     columns.push_back(std::move(column));
   }
   draw_intervals(names, columns, file);
-  return {file, title, says};
+  return {file, title + " [" + unit + "]", says};
 }
 
 // One line an aid, over delay; the value without delay from the table of tasks.
@@ -110,7 +111,7 @@ PageSection claims(const StudyReport& report) {
     section.notes.push_back({open    ? "Not shown"
                              : holds ? "Holds"
                                      : "Does not hold",
-                             claim.claim + ". " + claim.measured + ".",
+                             claim.claim + ": " + claim.measured + ".",
                              open    ? Tone::plain
                              : holds ? Tone::good
                                      : Tone::bad});
@@ -123,16 +124,19 @@ PageSection overview(const StudyReport& report, const std::filesystem::path& fol
                       .says =
                           "No delay. Squares are shares or "
                           "means, whiskers their 95 % ranges."};
-  section.pictures.push_back(intervals(report, folder / "touched.svg", &Summary::touched, 100, " %",
+  section.pictures.push_back(intervals(report, folder / "touched.svg", &Summary::touched, 100, "%",
                                        "Trials that touched",
                                        "Any contact of the arm with the workplace, by MuJoCo."));
-  section.pictures.push_back(intervals(report, folder / "time.svg", &Summary::time_s, 1, " s",
+  section.pictures.push_back(intervals(report, folder / "impact.svg", &Summary::impact_speed, 1e3,
+                                       "mm/s", "Speed of the first touch",
+                                       "Along its normal, of the trials that touched."));
+  section.pictures.push_back(intervals(report, folder / "time.svg", &Summary::time_s, 1, "s",
                                        "Time to finish",
                                        "Until the operator believed to be there."));
-  section.pictures.push_back(intervals(report, folder / "effort.svg", &Summary::effort, 1, " N·s",
+  section.pictures.push_back(intervals(report, folder / "effort.svg", &Summary::effort, 1, "N·s",
                                        "Effort of the hand", "Force over time."));
   section.pictures.push_back(intervals(report, folder / "clearance.svg", &Summary::clearance_m, 1e3,
-                                       " mm", "Smallest clearance",
+                                       "mm", "Smallest clearance",
                                        "Of any body point of the slave, in the mean."));
   return section;
 }
@@ -191,7 +195,8 @@ void write_study_page(const StudyReport& report, const std::filesystem::path& fo
          .says = fmt::format(
              "Each aid has one setting. Five values of it were tried on the first two tasks, {} "
              "trials each, with operators who do not come again; taken is the one of least cost: "
-             "seconds to finish, and ten for each touch. The operator is trained once with each "
+             "seconds to finish, two more for a touch and one for each 10 mm/s of its speed. The "
+             "operator is trained once with each "
              "aid "
              "and task: a slow and perfect approach.",
              report.options.tuning_trials)});

@@ -22,7 +22,7 @@ struct StudyReport {
   const StudyOptions& options;
   std::string place = {};                    ///< scene and arm, in words
   std::string command = {};                  ///< that makes it again
-  double seconds = 0;                   ///< that the whole took
+  double seconds = 0;                        ///< that the whole took
   std::vector<std::string> recordings = {};  ///< files, relative to the folder
   std::string replay = {};                   ///< a command that plays one of them
 };

@@ -11,12 +11,12 @@ namespace vicinity::cli {
 namespace {
 
 std::string share(const Estimate& e) {
-  return fmt::format("{:.0f} % ({:.0f}-{:.0f})", 100 * e.value, 100 * e.low, 100 * e.high);
+  return fmt::format("{:.0f}\u00a0% ({:.0f}–{:.0f})", 100 * e.value, 100 * e.low, 100 * e.high);
 }
 
 std::string ranged(const Estimate& e, double factor, int digits) {
-  return fmt::format("{:.{}f} ± {:.{}f}", factor * e.value, digits, factor * (e.high - e.value),
-                     digits);
+  return fmt::format("{:.{}f}\u00a0±\u00a0{:.{}f}", factor * e.value, digits,
+                     factor * (e.high - e.value), digits);
 }
 
 // Of those that touched; nothing where none did.
@@ -65,17 +65,17 @@ nlohmann::ordered_json as_json(const Estimate& e) { return {e.value, e.low, e.hi
 Table task_table(const StudyReport& report, std::size_t task) {
   Table table{{"aid", "touched (95 %)", "impact mm/s", "peak N", "overshoot mm", "miss mm",
                "time s", "finished", "effort N·s", "clearance mm", "aid pushed mJ",
-               "gave beyond taken"}};
+               "most given mJ"}};
   for (const CellResult& result : report.study.cells) {
     if (result.cell.part != Part::tasks || result.cell.task != task) continue;
     const Summary& s = result.summary;
-    table.push_back(
-        {result.cell.method.name, share(s.touched), if_touched(s, s.impact_speed, 1e3, 0),
-         if_touched(s, s.peak_force, 1, 0), ranged(s.overshoot_m, 1e3, 1), ranged(s.miss_m, 1e3, 1),
-         ranged(s.time_s, 1, 2), fmt::format("{:.0f} %", 100 * s.finished.value),
-         ranged(s.effort, 1, 1), ranged(s.clearance_m, 1e3, 1),
-         fmt::format("{:.1f}", 1e3 * s.pushed_j.value),
-         fmt::format("{} of {}, at most {} J", s.gave, s.trials, joules(s.most_given_j))});
+    table.push_back({result.cell.method.name, share(s.touched),
+                     if_touched(s, s.impact_speed, 1e3, 0), if_touched(s, s.peak_force, 1, 0),
+                     ranged(s.overshoot_m, 1e3, 1), ranged(s.miss_m, 1e3, 1),
+                     ranged(s.time_s, 1, 2), fmt::format("{:.0f} %", 100 * s.finished.value),
+                     ranged(s.effort, 1, 1), ranged(s.clearance_m, 1e3, 1),
+                     fmt::format("{:.1f}", 1e3 * s.pushed_j.value),
+                     fmt::format("{:.1f}", 1e3 * s.most_given_j)});
   }
   return table;
 }
@@ -174,7 +174,13 @@ Table operator_table() {
           {"seen as there within", n(1e3 * p.tolerance_m) + " mm", "chosen"},
           {"slower at each noticed rise", "by " + n(p.caution) + ", down to " + n(p.least_pace),
            "chosen"},
-          {"creeps on until it feels as trained", n(1e3 * p.creep_speed) + " mm/s", "chosen"}};
+          {"creeps on until it feels as trained",
+           n(1e3 * p.creep_speed) + " mm/s, for " + n(p.creep_most) + " s.d. of the depth error",
+           "chosen"},
+          {"corrections by sight", fmt::format("{} at most", p.most_corrections), "chosen"},
+          {"resistance is felt over", n(1e3 * p.felt_over_s) + " ms", "chosen"},
+          {"slowest motion that tells it", n(1e3 * p.slowest_felt) + " mm/s", "chosen"},
+          {"reflected contact that stops him", n(p.bump) + " N", "chosen"}};
 }
 
 std::string as_markdown(const StudyReport& report) {
