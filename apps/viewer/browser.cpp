@@ -20,7 +20,7 @@
 namespace vicinity::viewer {
 namespace {
 
-constexpr int longest_answer_ms = 60'000;
+constexpr int longest_answer_ms = 300'000;
 
 Error trouble(const std::string& what, const std::string& found = {}) {
   return Error({.where = "the browser", .what = what, .found = found});

@@ -26,7 +26,7 @@ class Browser {
   void open(const std::string& address, int width, int height);
 
   /// Asks for something, and waits for the answer. Errors: throws Error where the browser refuses,
-  /// has ended, or does not answer within a minute.
+  /// has ended, or does not answer within five minutes.
   nlohmann::json call(const std::string& method, const nlohmann::json& parameters);
 
   /// The value of an expression in the page; null where it has none.

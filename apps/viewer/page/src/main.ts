@@ -30,7 +30,7 @@ import { Notices } from "./panel/notices";
 import { ObjectsPanel } from "./panel/objects_panel";
 import { PlayPanel } from "./panel/play_panel";
 import { holdCommand, jointsCommand } from "./protocol/command";
-import type { Hello } from "./protocol/hello";
+import type { Hello, Vec3 } from "./protocol/hello";
 import { Session } from "./protocol/session";
 import type { Axis } from "./protocol/shapes";
 import { isSameMoment, type BodyPoints, type Snapshot } from "./protocol/snapshot";
@@ -270,16 +270,17 @@ function replaceWorkplace(hello: Hello): void {
   replay.setWorkplace(made);
   charts.clear();
   for (const remark of hello.robot.remarks) notices.say(remark);
-  made
-    .load()
-    .then(() => finishLoading(made))
-    .catch((error: unknown) => session.fail(error));
+  performance.mark("hello");
+  const loaded = made.load();
+  stage.rest(loaded);
+  loaded.then(() => finishLoading(made)).catch((error: unknown) => session.fail(error));
 }
 
 /** Says that all is drawn, for whoever takes a picture of the page. */
 async function finishLoading(loaded: Workplace): Promise<void> {
   while (loaded === workplace && session.snapshot === null) await nextFrame();
   if (loaded !== workplace) return;
+  performance.mark("all has come");
   loaded.apply();
   await nextFrame();
   await nextFrame();
@@ -402,13 +403,13 @@ window.addEventListener("drop", (event) => {
 document.addEventListener("visibilitychange", () => session.setRate(document.hidden ? 0 : 60));
 
 // For scripts and a curious person: what the page last heard, how long its frames took [ms], where
-// on the page the tool is [px], the view as a picture, and which voxels the slice shows.
+// on the page a point is seen [px], the view as a picture, and which voxels the slice shows.
 Object.assign(window, {
   vicinity: {
     hello: () => session.hello,
     snapshot: () => session.snapshot,
     frameTimes: () => [...stage.frameTimes],
-    toolOnPage: () => stage.onPage(handle.place),
+    onPage: (point: Vec3) => stage.onPage(new Vector3(...point)),
     picture: () => stage.picture(),
     slice: () => `${workplace?.slice.latest?.axis} ${workplace?.slice.latest?.index}`,
   },

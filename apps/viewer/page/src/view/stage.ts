@@ -17,6 +17,9 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 // No frame for so long: nothing has moved, and the pause is no frame's time.
 const restAfter_ms = 1000;
+// What comes within this time is drawn at once, and not piece by piece: where the processor draws,
+// each frame that shows half of it delays the other half.
+const longestRest_ms = 800;
 
 export type ViewDirection = "iso" | "front" | "side" | "top";
 
@@ -37,6 +40,7 @@ export class Stage {
   readonly frameTimes: number[] = [];
 
   private wanted = false;
+  private rests = false;
   private lastFrame = 0;
   private focus = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
   private readonly beforeFrame: (() => void)[] = [];
@@ -61,9 +65,20 @@ export class Stage {
     this.resize();
   }
 
+  /** Draws nothing until all has come, or for a moment at most. */
+  rest(until: Promise<unknown>): void {
+    this.rests = true;
+    const goOn = (): void => {
+      this.rests = false;
+      this.draw();
+    };
+    until.then(goOn, goOn);
+    setTimeout(goOn, longestRest_ms);
+  }
+
   /** Something has changed: draw a frame when the browser next shows one. */
   draw(): void {
-    if (this.wanted) return;
+    if (this.wanted || this.rests) return;
     this.wanted = true;
     requestAnimationFrame(() => {
       this.wanted = false;

@@ -4,9 +4,9 @@
 // What the page shows while the arm is led is what the command line says for the same pose.
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, expect, test } from "vitest";
-import { launch, openPage, repository, scratchFolder, Server, vicinity } from "./viewer";
+import type { Page } from "playwright-core";
+import { expect, test } from "vitest";
+import { hotCell, hotCellField, hotCellStart, longestWait_ms, openPage, scratchFolder, Server, vicinity } from "./viewer";
 
 interface Moment {
   status: number;
@@ -19,27 +19,12 @@ interface Moment {
   viscosity: number;
 }
 
-const scene = join(repository, "scenes/hot_cell.yaml");
 const folder = scratchFolder();
-const field = join(folder, "hot_cell.vicinity");
-let browser: Browser;
-
-beforeAll(async () => {
-  vicinity(["build", scene, "--voxel-size", "0.012", "-o", field]);
-  browser = await launch();
-});
-
-afterAll(async () => {
-  await browser?.close();
-});
 
 /** The page's own snapshot, as numbers. */
 function moment(page: Page): Promise<Moment> {
   return page.evaluate(() => {
-    type Arrays = Record<"q" | "qd" | "tool" | "toolVelocity" | "force" | "tau", ArrayLike<number>>;
-    type Snapshot = Arrays & { status: number; highestViscosity: number };
-    const held = window as never as { vicinity: { snapshot(): Snapshot } };
-    const s = held.vicinity.snapshot();
+    const s = window.vicinity.snapshot();
     return {
       status: s.status,
       q: Array.from(s.q),
@@ -53,36 +38,38 @@ function moment(page: Page): Promise<Moment> {
   });
 }
 
-/** Where on the page the tool's ring is. */
-function ringAt(page: Page): Promise<{ x: number; y: number }> {
-  return page.evaluate(() => {
-    const held = window as never as { vicinity: { toolOnPage(): { x: number; y: number } } };
-    return held.vicinity.toolOnPage();
+/**
+ * Drags the ring along a way, there and back, until something has been felt often enough.
+ * @return the moments at which it was, and what the panel said of the drag meanwhile
+ */
+async function dragRing(page: Page, way: readonly [number, number]): Promise<{ felt: Moment[]; readings: Set<string> }> {
+  const felt: Moment[] = [];
+  const readings = new Set<string>();
+  const from = await page.evaluate(() => {
+    const [x, y, z] = window.vicinity.snapshot().tool;
+    return window.vicinity.onPage([x!, y!, z!]);
   });
-}
-
-/** Drags the ring along a way and keeps what was felt at each step. */
-async function dragRing(page: Page, way: readonly [number, number], steps: number): Promise<Moment[]> {
-  const moments: Moment[] = [];
-  const from = await ringAt(page);
   await page.mouse.move(from.x, from.y);
   await page.mouse.down();
-  for (let n = 1; n <= steps; ++n) {
-    await page.mouse.move(from.x + (way[0] * n) / steps, from.y + (way[1] * n) / steps);
-    await page.waitForTimeout(40);
-    moments.push(await moment(page));
+  for (let n = 1; n <= 80 && felt.length < 6; ++n) {
+    const share = Math.sin((Math.PI / 40) * n);
+    await page.mouse.move(from.x + way[0] * share, from.y + way[1] * share);
+    const now = await moment(page);
+    if (now.status === 0 && Math.hypot(...now.force) > 0) felt.push(now);
+    readings.add((await page.locator("[data-tool=drag]").textContent()) ?? "");
   }
   await page.mouse.up();
-  return moments;
+  return { felt, readings };
 }
 
 test("a probe that is dragged feels F = -mu S v with the viscosity that query says", async () => {
   // Over the bench beside the cone, 1.2 m into the cell.
+  const field = hotCellField();
   const server = await Server.start([field, "--start", "1.2,0.5,0.95"]);
-  const { page, complaints } = await openPage(browser, `${server.address}?view=front`);
-  const moments = await dragRing(page, [0, 150], 60);
-  const felt = moments.filter(({ force }) => Math.hypot(...force) > 0);
+  const { page, complaints } = await openPage(`${server.address}?view=front`);
+  const { felt, readings } = await dragRing(page, [0, 150]);
   expect(felt.length).toBeGreaterThan(3);
+  expect([...readings].some((text) => Number.parseFloat(text) > 0)).toBe(true);
   for (const { tool, velocity, force, viscosity } of felt) {
     const said = JSON.parse(vicinity(["query", field, "--json", "--", ...tool.slice(0, 3).map(String)])) as {
       viscosity: number;
@@ -90,21 +77,17 @@ test("a probe that is dragged feels F = -mu S v with the viscosity that query sa
     expect(viscosity).toBe(said.viscosity);
     velocity.forEach((v, n) => expect(force[n]).toBeCloseTo(-said.viscosity * v, 4)); // S is 1 m²
   }
-  const shown = await page.locator("[data-reading=force]").textContent();
-  expect(Number(shown)).toBeGreaterThanOrEqual(0);
   expect(complaints).toEqual([]);
   await page.context().close();
   await server.stop();
 });
 
 test("an arm that is dragged feels what replay says for the same pose and velocities", async () => {
-  const start = "0.08,-0.15,0,2.416,0,-0.695,0"; // between the risers, before the vessel
-  const server = await Server.start([field, "--scene", scene, "--start", start]);
-  const { page, complaints } = await openPage(browser, `${server.address}?view=front`);
-  const moments = await dragRing(page, [-120, -30], 40);
-  const felt = moments.filter(({ status, force }) => status === 0 && Math.hypot(...force) > 0);
+  const server = await Server.start([hotCellField(), "--scene", hotCell, "--start", hotCellStart]);
+  const { page, complaints } = await openPage(`${server.address}?view=front`);
+  const { felt } = await dragRing(page, [-120, -30]);
   expect(felt.length).toBeGreaterThan(3);
-  for (const { q, qd, force, tau } of felt.slice(0, 6)) {
+  for (const { q, qd, force, tau } of felt) {
     // A log that passes through that pose at those velocities; its second line is the moment.
     const names = q.map((_, n) => `joint_${n + 1}`);
     const line = (t: number): string =>
@@ -114,12 +97,76 @@ test("an arm that is dragged feels what replay says for the same pose and veloci
     writeFileSync(log, [header, line(0), line(0.001), line(0.002)].join("\n") + "\n");
     const out = join(folder, "felt.csv");
     const columns = ["t=t", ...names.flatMap((name) => [`${name}=${name}`, `qd_${name}=qd_${name}`])].join(",");
-    vicinity(["replay", field, "--scene", scene, "--trajectory", log, "--columns", columns, "-o", out]);
+    vicinity(["replay", hotCellField(), "--scene", hotCell, "--trajectory", log, "--columns", columns, "-o", out]);
     const [head, , second] = readFileSync(out, "utf8").split("\n").map((row) => row.split(","));
     const said = (name: string): number => Number(second![head!.indexOf(name)]);
     ["fx", "fy", "fz"].forEach((name, n) => expect(force[n]).toBeCloseTo(said(name), 3));
     names.forEach((name, n) => expect(tau[n]).toBeCloseTo(said(`tau_${name}`), 4));
   }
+  expect(complaints).toEqual([]);
+  await page.context().close();
+  await server.stop();
+});
+
+interface Effect {
+  type: string;
+  duration: number;
+  strongMagnitude: number;
+  weakMagnitude: number;
+  felt: number;
+}
+
+test("a gamepad leads the tool and rumbles in proportion to the drag", async () => {
+  const server = await Server.start([hotCellField(), "--start", "1.2,0.5,0.95"]);
+  const { page, complaints } = await openPage(`${server.address}?view=front`, {
+    // A pad that this machine does not have: its rumble is written down, with the drag of that moment.
+    before: (page) =>
+      page.addInitScript(() => {
+        const effects: object[] = [];
+        const buttons = Array.from({ length: 17 }, () => ({ pressed: false, touched: false, value: 0 }));
+        const vibrationActuator = {
+          playEffect: (type: string, parameters: object): Promise<string> => {
+            effects.push({ type, ...parameters, felt: window.vicinity.snapshot().felt });
+            return Promise.resolve("complete");
+          },
+        };
+        const pad = { id: "Pad of the test", index: 0, connected: true, mapping: "standard", axes: [0, 0, 0, 0], buttons, vibrationActuator };
+        navigator.getGamepads = () => [null, pad as never];
+        Object.assign(window, { pad, effects });
+      }),
+  });
+  const effects = (): Promise<Effect[]> => page.evaluate(() => (window as never as { effects: Effect[] }).effects);
+  await page.getByText("Pad of the test: rumble 0 %").waitFor();
+  expect(await effects()).toEqual([]); // nothing is felt in free space
+  const press = (button: number, value: number): Promise<void> =>
+    page.evaluate(([button, value]) => {
+      (window as never as { pad: { buttons: { value: number }[] } }).pad.buttons[button!]!.value = value!;
+    }, [button, value]);
+  const height = (): Promise<number> => page.evaluate(() => window.vicinity.snapshot().tool[2]!);
+  const before = await height();
+  // Down into the bench's layers and up again, until it has rumbled often enough.
+  for (let n = 0; n < 60 && (await effects()).length < 4; ++n) {
+    const down = n % 20 < 10;
+    await press(6, down ? 1 : 0);
+    await press(7, down ? 0 : 1);
+    await page.waitForTimeout(300);
+  }
+  await press(6, 0);
+  await press(7, 0);
+  expect(Math.abs((await height()) - before)).toBeGreaterThan(0.01);
+  const rumbled = await effects();
+  expect(rumbled.length).toBeGreaterThan(3);
+  for (const { type, felt, duration, strongMagnitude, weakMagnitude } of rumbled) {
+    expect(type).toBe("dual-rumble");
+    expect(duration).toBeGreaterThan(100); // longer than the pause until the next
+    expect(strongMagnitude).toBeCloseTo(Math.min(1, felt / 4), 12); // half at 2 N
+    expect(weakMagnitude).toBe(strongMagnitude);
+    expect(felt).toBeGreaterThan(0);
+  }
+  // At rest it falls silent.
+  await page.keyboard.press("Escape");
+  await expect.poll(() => page.evaluate(() => window.vicinity.snapshot().felt), { timeout: longestWait_ms }).toBe(0);
+  await page.getByText("Pad of the test: rumble 0 %").waitFor();
   expect(complaints).toEqual([]);
   await page.context().close();
   await server.stop();

@@ -1,105 +1,245 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The page beside a server that has the hot cell at a coarse resolution, and its arm.
-import { createHash } from "node:crypto";
-import { join } from "node:path";
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, expect, test } from "vitest";
-import { launch, openPage, repository, scratchFolder, Server, vicinity } from "./viewer";
+// The page beside a server that has the hot cell at a coarse resolution, and its arm: what is seen
+// and clicked is what the field holds.
+import type { Page } from "playwright-core";
+import { afterAll, afterEach, beforeAll, expect, test } from "vitest";
+import { boundaryColour, innerColour, innerHatchColour, rankColour, type Colour } from "../../src/colour/rank_palette";
+import type { Hello, Vec3 } from "../../src/protocol/hello";
+import { seeded } from "../unit/seeded";
+import {
+  coloursAt,
+  hotCell,
+  hotCellField,
+  hotCellStart,
+  longestWait_ms,
+  openPage,
+  query,
+  Server,
+  theBrowser,
+  vicinity,
+  type Queried,
+  type Rgb,
+} from "./viewer";
 
-const scene = join(repository, "scenes/hot_cell.yaml");
-const start = "0.08,-0.15,0,2.416,0,-0.695,0"; // between the risers, before the vessel
-let browser: Browser;
 let server: Server;
-let field: string;
+let page: Page; // the cut at y = 1.15, from the front, near enough to tell voxels apart
+let complaints: string[];
+let hello: Hello;
 
 beforeAll(async () => {
-  field = join(scratchFolder(), "hot_cell.vicinity");
-  vicinity(["build", scene, "--voxel-size", "0.012", "-o", field]);
-  browser = await launch();
-  server = await Server.start([field, "--scene", scene, "--start", start]);
+  server = await Server.start([hotCellField(), "--scene", hotCell, "--start", hotCellStart]);
+  ({ page, complaints } = await openPage(`${server.address}?view=front&slice=y:1.15`));
+  hello = await page.evaluate(() => window.vicinity.hello());
+  await page.keyboard.press("Escape"); // hold: an arm at rest leaves the picture alone
+  for (let n = 0; n < 9; ++n) await page.keyboard.press("+");
 });
 
+afterEach(() => expect(complaints).toEqual([]));
+
 afterAll(async () => {
-  await browser?.close();
+  await page?.context().close();
   await server?.stop();
 });
 
-/** The pixels that WebGL drew, in short. */
-async function picture(page: Page): Promise<string> {
-  const png = await page.evaluate(() => (window as never as { vicinity: { picture(): string } }).vicinity.picture());
-  return createHash("sha256").update(png).digest("hex");
+/** Ticks or clears a box of "Also show". */
+async function show(name: string, shown: boolean): Promise<void> {
+  await page.locator("#left").getByRole("checkbox", { name, exact: true }).setChecked(shown);
+}
+
+async function showAllButTheSlice(shown: boolean): Promise<void> {
+  for (const name of ["Objects", "Arm", "Body points", "Drag"]) await show(name, shown);
 }
 
 /** Waits until the slice that the page has is another one. */
-async function untilCut(page: Page, act: () => Promise<void>): Promise<void> {
-  const index = (): Promise<string> =>
-    page.evaluate(() => (window as never as { vicinity: { slice(): string } }).vicinity.slice());
-  const before = await index();
+async function untilCut(act: () => Promise<void>): Promise<void> {
+  const slice = (): Promise<string> => page.evaluate(() => window.vicinity.slice());
+  const before = await slice();
   await act();
-  await expect.poll(index, { timeout: 60_000 }).not.toBe(before);
+  await expect.poll(slice, { timeout: longestWait_ms }).not.toBe(before);
 }
 
-test("the page loads, draws, and its console has nothing to complain about", async () => {
-  const { page, complaints } = await openPage(browser, server.address);
+async function cutAt(y: number): Promise<void> {
+  const where = page.getByLabel("Where the slice is, in metres");
+  await untilCut(async () => {
+    await where.fill(String(y));
+    await where.press("Enter");
+  });
+}
+
+/** The middle of the voxel that a point lies in. */
+function middle(point: Vec3): Vec3 {
+  const { origin, voxelSize: h } = hello.field;
+  return point.map((x, n) => origin[n]! + h * (Math.floor((x - origin[n]!) / h) + 0.5)) as Vec3;
+}
+
+/** Middles of voxels of the cut at y that are within the view and away from the tool's ring. */
+async function seenVoxels(y: number, count: number): Promise<Vec3[]> {
+  const random = seeded(7);
+  const { origin, dims, voxelSize: h } = hello.field;
+  const points = Array.from({ length: count }, () =>
+    middle([origin[0] + random() * h * dims[0], y, origin[2] + random() * h * dims[2]]),
+  );
+  const seen = await page.evaluate((points) => {
+    const box = document.getElementById("canvas")!.getBoundingClientRect();
+    const [a, b, c] = window.vicinity.snapshot().tool;
+    const ring = window.vicinity.onPage([a!, b!, c!]);
+    return points.map((point) => {
+      const { x, y } = window.vicinity.onPage(point);
+      const inside = x > box.left + 4 && x < box.right - 4 && y > box.top + 4 && y < box.bottom - 4;
+      return inside && Math.hypot(x - ring.x, y - ring.y) > 40;
+    });
+  }, points);
+  return points.filter((_, n) => seen[n]);
+}
+
+function isColour(seen: Rgb, colour: Colour): boolean {
+  return seen.every((x, n) => Math.abs(x - 255 * colour[n]!) < 3);
+}
+
+/** Whether a pixel is what the slice paints for such a voxel. */
+function isPainted(seen: Rgb, voxel: Queried): boolean {
+  if (voxel.kind === "boundary") return isColour(seen, boundaryColour);
+  if (voxel.kind === "inner") return isColour(seen, innerColour) || isColour(seen, innerHatchColour);
+  return isColour(seen, rankColour(voxel.rank, hello.field.ranks));
+}
+
+test("the page loads, draws, asks nobody but its server, and has nothing to complain about", async () => {
   expect(await page.title()).toContain("hot_cell.vicinity");
-  expect(await page.locator("[data-reading=status]").textContent()).not.toBe("–");
-  const reading = page.getByRole("figure", { name: "Legend of ranks" });
-  expect(await reading.textContent()).toContain("32");
-  // Nothing but this server was asked for anything.
+  await expect.poll(() => page.locator("[data-reading=status]").textContent(), { timeout: longestWait_ms }).not.toBe("–");
+  expect(await page.getByRole("figure", { name: "Legend of ranks" }).textContent()).toContain("32");
   const hosts = await page.evaluate(() => performance.getEntriesByType("resource").map(({ name }) => new URL(name).host));
   expect(new Set(hosts)).toEqual(new Set([new URL(server.address).host]));
-  expect(complaints).toEqual([]);
-  await page.context().close();
 });
 
-test("moving the slice changes the picture, and moving it back brings the same one again", async () => {
-  const { page, complaints } = await openPage(browser, server.address);
-  await page.keyboard.press("Escape"); // hold: an arm at rest leaves the picture alone
-  const where = page.getByLabel("Where the slice is, in metres");
-  const cutAt = async (metres: string): Promise<string> => {
-    await untilCut(page, async () => {
-      await where.fill(metres);
-      await where.press("Enter");
-    });
-    return picture(page);
-  };
-  const first = await cutAt("1.15");
-  const other = await cutAt("0.5");
-  expect(other).not.toBe(first);
-  expect(await cutAt("1.15")).toBe(first);
-  await untilCut(page, () => page.getByRole("button", { name: "x", exact: true }).click());
-  expect(await picture(page)).not.toBe(first);
-  expect(complaints).toEqual([]);
-  await page.context().close();
+test("the slice moves, and each of its pixels has the colour of the voxel that query finds there", async () => {
+  await showAllButTheSlice(false);
+  const painted: Rgb[][] = [];
+  for (const y of [1.15, 0.5, 1.15]) {
+    if (painted.length > 0) await cutAt(y);
+    const points = await seenVoxels(1.15, 600);
+    const voxels = query(hotCellField(), points.map(([x, , z]) => middle([x, y, z])));
+    const at = (await page.evaluate(() => window.vicinity.slice())).split(" ").map(Number);
+    expect(at).toEqual([1, Math.floor((y - hello.field.origin[1]) / hello.field.voxelSize)]);
+    const colours = await coloursAt(page, voxels.map(({ point }) => point));
+    const full = voxels.map((voxel, n) => ({ voxel, seen: colours[n]! })).filter(({ voxel }) => voxel.kind !== "empty");
+    expect(full.length).toBeGreaterThan(40);
+    expect(full.filter(({ voxel, seen }) => !isPainted(seen, voxel))).toEqual([]);
+    expect(new Set(full.map(({ voxel }) => voxel.rank)).size).toBeGreaterThan(4);
+    painted.push(colours);
+  }
+  expect(painted[1]).not.toEqual(painted[0]);
+  expect(painted[2]).toEqual(painted[0]);
+  // A key moves it by a voxel.
+  const index = async (): Promise<number> => Number((await page.evaluate(() => window.vicinity.slice())).split(" ")[1]);
+  const before = await index();
+  await page.locator("#canvas").focus();
+  await untilCut(() => page.keyboard.press("]"));
+  expect(await index()).toBe(before + 1);
+  await untilCut(() => page.keyboard.press("["));
 });
 
 test("a click says what the voxel is, as query does", async () => {
-  const { page, complaints } = await openPage(browser, `${server.address}?view=front&slice=y:1.15`);
-  const box = (await page.locator("#canvas").boundingBox())!;
-  await page.mouse.click(box.x + 0.42 * box.width, box.y + 0.5 * box.height);
-  await page.locator("[data-picked=point]").waitFor();
-  const picked = async (name: string): Promise<string> => (await page.locator(`[data-picked=${name}]`).textContent()) ?? "";
-  const [i, j, k] = (await picked("voxel")).split(", ").map(Number) as [number, number, number];
-  const { origin, h } = await page.evaluate(() => {
-    const hello = (window as never as { vicinity: { hello(): { field: { origin: number[]; voxelSize: number } } } }).vicinity.hello();
-    return { origin: hello.field.origin, h: hello.field.voxelSize };
-  });
-  const middle = [i, j, k].map((n, axis) => String(origin[axis]! + h * (n + 0.5)));
-  const said = JSON.parse(vicinity(["query", field, "--json", "--", ...middle])) as Record<string, unknown>;
-  expect(await picked("kind")).toBe(said.kind);
-  expect(await picked("viscosity")).toContain(String(said.viscosity));
-  expect(complaints).toEqual([]);
-  await page.context().close();
+  const voxels = query(hotCellField(), await seenVoxels(1.15, 300));
+  const kinds = [...new Set(voxels.map(({ kind, rank }) => `${kind} ${rank}`))];
+  const chosen = kinds.map((name) => voxels.find(({ kind, rank }) => `${kind} ${rank}` === name)!).slice(0, 6);
+  expect(chosen.length).toBeGreaterThan(3);
+  const card = page.locator(".card.pick");
+  for (const { point } of chosen) {
+    const at = await page.evaluate((point) => window.vicinity.onPage(point), point);
+    await page.mouse.click(at.x, at.y);
+    const { origin, voxelSize: h } = hello.field;
+    const index = point.map((x, n) => Math.floor((x - origin[n]!) / h)).join(", ");
+    await card.getByText(index, { exact: true }).waitFor();
+    const said = JSON.parse(vicinity(["query", hotCellField(), "--json", "--", ...point.map(String)])) as Record<string, unknown>;
+    const picked = async (name: string): Promise<string | null> => {
+      const value = card.locator(`[data-picked=${name}]`);
+      return (await value.count()) > 0 ? value.textContent() : null;
+    };
+    expect(await picked("kind")).toBe(said.kind);
+    expect(await picked("object")).toBe(said.object);
+    expect(Number(await picked("rank"))).toBe(said.rank);
+    expect(Number.parseFloat((await picked("viscosity"))!)).toBe(said.viscosity);
+  }
+});
+
+test("two clicks measure the length between them", async () => {
+  const points = await seenVoxels(1.15, 300);
+  const [from, to] = [points[0]!, points.find(([x]) => Math.abs(x - points[0]![0]) > 0.3)!];
+  await page.locator("#canvas").focus();
+  await page.keyboard.press("m");
+  for (const point of [from, to]) {
+    const at = await page.evaluate((point) => window.vicinity.onPage(point), point);
+    await page.mouse.click(at.x, at.y);
+  }
+  const label = page.locator("[data-reading=measured]");
+  await label.waitFor();
+  const [value, unit] = ((await label.textContent()) ?? "").split(" ");
+  const length = Number(value) * (unit === "mm" ? 0.001 : 1);
+  expect(Math.abs(length - Math.hypot(...from.map((x, n) => x - to[n]!)))).toBeLessThan(hello.field.voxelSize);
+  await page.keyboard.press("Escape");
+  expect(await label.isHidden()).toBe(true);
+});
+
+test("an object that is hidden takes its layers with it, and comes back as it was", async () => {
+  const voxels = query(hotCellField(), await seenVoxels(1.15, 600)).filter(({ kind }) => kind === "neighbour");
+  const name = voxels[0]!.object;
+  const own = voxels.filter(({ object }) => object === name);
+  const looks = (): Promise<Rgb[]> => coloursAt(page, own.map(({ point }) => point));
+  const before = await looks();
+  await page.locator("#left").getByRole("button", { name, exact: true }).click();
+  await page.locator("#canvas").focus();
+  await page.keyboard.press("h");
+  await page.locator("#left").getByRole("button", { name: `Show ${name}` }).waitFor();
+  const hidden = await looks();
+  expect(own.filter((voxel, n) => isPainted(hidden[n]!, voxel))).toEqual([]);
+  await page.keyboard.press("Shift+H");
+  expect(await looks()).toEqual(before);
+  await showAllButTheSlice(true);
+});
+
+/** Contrast of two CSS colours, as WCAG 2 has it. */
+function contrast(a: string, b: string): number {
+  const luminance = (css: string): number => {
+    const [red, green, blue] = (css.match(/[\d.]+/g) ?? []).slice(0, 3).map((byte) => {
+      const x = Number(byte) / 255;
+      return x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
+    });
+    return 0.2126 * red! + 0.7152 * green! + 0.0722 * blue!;
+  };
+  const [low, high] = [luminance(a), luminance(b)].sort((x, y) => x - y);
+  return (high! + 0.05) / (low! + 0.05);
+}
+
+test("keys list themselves, and turn dark into light, which can be read and is remembered", async () => {
+  await page.locator("#canvas").focus();
+  await page.keyboard.press("?");
+  const keys = page.getByRole("dialog", { name: "Keys" });
+  await keys.waitFor();
+  for (const text of ["orbit", "measure", "lead the tool", "gamepad", "play, pause"]) {
+    expect(await keys.textContent()).toContain(text);
+  }
+  await page.keyboard.press("Escape");
+  await keys.waitFor({ state: "hidden" });
+  await page.locator("#canvas").focus();
+  for (const theme of ["light", "dark"]) {
+    await page.keyboard.press("t");
+    const look = await page.evaluate(() => {
+      const { color, backgroundColor } = getComputedStyle(document.body);
+      return { color, backgroundColor, theme: document.documentElement.dataset.theme, kept: localStorage.getItem("vicinity-theme") };
+    });
+    expect(look).toMatchObject({ theme, kept: theme });
+    expect(contrast(look.color, look.backgroundColor)).toBeGreaterThan(7);
+  }
 });
 
 test("a page of another origin is refused", async () => {
   const own = new URL(server.address);
-  const other = await Server.start([field, "--scene", scene]);
-  const page = await (await browser.newContext()).newPage();
-  await page.goto(other.address);
-  const outcome = await page.evaluate(async (address) => {
+  const other = await Server.start([hotCellField()]);
+  const foreign = await (await (await theBrowser()).newContext()).newPage();
+  await foreign.goto(`${other.address}icon.svg`);
+  const outcome = await foreign.evaluate(async (address) => {
     const socket = new WebSocket(`ws://${address}/ws`);
     const opened = await new Promise<boolean>((resolve) => {
       socket.onopen = () => resolve(true);
@@ -112,26 +252,25 @@ test("a page of another origin is refused", async () => {
     return { opened, put };
   }, own.host);
   expect(outcome).toEqual({ opened: false, put: "refused" });
-  await page.context().close();
+  await foreign.context().close();
   await other.stop();
 });
 
 test("at 200 % zoom on a laptop everything is reachable and nothing overflows", async () => {
-  const { page, complaints } = await openPage(browser, server.address, { width: 1366, height: 768, zoom: 2 });
-  const overflow = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
+  const zoomed = await openPage(server.address, { width: 1366, height: 768, zoom: 2 });
+  const narrow = zoomed.page;
+  const overflow = await narrow.evaluate(() => document.documentElement.scrollWidth > innerWidth);
   expect(overflow).toBe(false);
-  const view = (await page.locator("#stage").boundingBox())!;
+  const view = (await narrow.locator("#stage").boundingBox())!;
   expect(view.width).toBeGreaterThan(600);
   expect(view.height).toBeGreaterThan(180);
-  for (const name of ["Scene panel", "Arm panel"]) {
-    await page.getByRole("button", { name }).click();
-    const tabs = page.locator(name === "Scene panel" ? "#left" : "#right").getByRole("tab");
+  for (const [name, side] of [["Scene panel", "#left"], ["Arm panel", "#right"]] as const) {
+    await narrow.getByRole("button", { name }).click();
+    const tabs = narrow.locator(side).getByRole("tab");
     for (const tab of await tabs.all()) await tab.click();
     expect(await tabs.first().isVisible()).toBe(true);
-    await page.getByRole("button", { name }).click();
+    await narrow.getByRole("button", { name }).click();
   }
-  await page.keyboard.press("?");
-  expect(await page.getByRole("dialog", { name: "Keys" }).isVisible()).toBe(true);
-  expect(complaints).toEqual([]);
-  await page.context().close();
+  expect(zoomed.complaints).toEqual([]);
+  await narrow.context().close();
 });

@@ -4,11 +4,11 @@
 // From STL to feel: dropped, its unit stated, placed, built, felt, saved and opened again.
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import type { Browser, Page } from "playwright-core";
+import type { Page } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { launch, openPage, scratchFolder, Server, vicinity } from "./viewer";
+import { dropFile, openPage, scratchFolder, Server, vicinity } from "./viewer";
 
-let browser: Browser;
+const folder = scratchFolder();
 let server: Server;
 
 /** A box as a binary STL, without a unit as all are. */
@@ -25,36 +25,56 @@ function boxStl(size: readonly [number, number, number]): Buffer {
 }
 
 beforeAll(async () => {
-  const folder = scratchFolder();
   const scene = join(folder, "start.yaml");
   writeFileSync(
     scene,
     "voxel_size: 0.01\nobjects:\n  - name: post\n    primitive: {box: {size: [0.1, 0.1, 0.4]}}\n    pose: {xyz: [0, 0, 0.2]}\n",
   );
-  browser = await launch();
   server = await Server.start([scene]);
 });
 
 afterAll(async () => {
-  await browser?.close();
   await server?.stop();
 });
 
-async function drop(page: Page, name: string, bytes: Buffer): Promise<void> {
-  await page.evaluate(
-    ({ name, bytes }) => {
-      const data = new DataTransfer();
-      data.items.add(new File([new Uint8Array(bytes)], name));
-      window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
-    },
-    { name, bytes: [...bytes] },
-  );
+/** Where a length along x is seen from the front, and which way: the gizmo's red arrow. */
+async function dragAlongX(page: Page, from: readonly [number, number, number], way: number): Promise<void> {
+  const [origin, beside] = await page.evaluate(([x, y, z]) => {
+    return [window.vicinity.onPage([x, y, z]), window.vicinity.onPage([x + 0.1, y, z])] as const;
+  }, from);
+  const length = Math.hypot(beside.x - origin.x, beside.y - origin.y);
+  const at = (pixels: number): [number, number] => [
+    origin.x + (pixels * (beside.x - origin.x)) / length,
+    origin.y + (pixels * (beside.y - origin.y)) / length,
+  ];
+  const grip = 30; // [px] from the gizmo's middle, within its arrow
+  await page.mouse.move(...at(grip));
+  await page.mouse.down();
+  for (let n = 1; n <= 4; ++n) await page.mouse.move(...at(grip + (way * n) / 4));
+  await page.mouse.up();
+}
+
+/** Writes down every percentage that the bar of the build has shown. */
+function watchProgress(page: Page): Promise<void> {
+  return page.evaluate(() => {
+    const bar = document.querySelector("#left progress")!;
+    const shown: string[] = [];
+    new MutationObserver(() => shown.push(bar.nextElementSibling!.textContent ?? "")).observe(bar.parentElement!, {
+      subtree: true,
+      childList: true,
+      characterData: true,
+      attributes: true,
+    });
+    Object.assign(window, { progressShown: shown });
+  });
 }
 
 test("an STL is dropped, its unit stated, placed, built, saved and opened again", async () => {
-  const { page, complaints } = await openPage(browser, server.address);
+  const { page, complaints } = await openPage(`${server.address}?view=front`);
   await page.getByRole("tab", { name: "Edit scene" }).click();
-  await drop(page, "flange.stl", boxStl([120, 80, 40]));
+  const file = join(folder, "flange.stl");
+  writeFileSync(file, boxStl([120, 80, 40]));
+  await dropFile(page, file);
 
   const dialog = page.getByRole("dialog", { name: "Unit of flange.stl" });
   await dialog.waitFor();
@@ -67,14 +87,22 @@ test("an STL is dropped, its unit stated, placed, built, saved and opened again"
   await dialog.getByText("millimetres", { exact: true }).click();
   await add.click();
 
-  await page.getByLabel("Place x").fill("0.3");
-  await page.getByLabel("Place x").press("Enter");
+  // The gizmo stands at its origin; its arrow carries it along x, and along nothing else.
+  const place = (axis: string): Promise<number> => page.getByLabel(`Place ${axis}`).inputValue().then(Number);
+  expect([await place("x"), await place("y"), await place("z")]).toEqual([0, 0, 0]);
+  await dragAlongX(page, [0, 0, 0], 90);
+  const x = await place("x");
+  expect(x).toBeGreaterThan(0.1); // beside the post, which ends at 0.05 m
+  expect([await place("y"), await place("z")]).toEqual([0, 0]);
   await page.getByLabel("q", { exact: true }).fill("3");
   await page.getByLabel("q", { exact: true }).press("Enter");
   await page.getByLabel("Coding", { exact: true }).fill("30, 20, 10");
   await page.getByLabel("Coding", { exact: true }).press("Enter");
+  await watchProgress(page);
   await page.getByRole("button", { name: "Build", exact: true }).click();
   await page.getByText(/^Built in/).waitFor();
+  const shown = await page.evaluate(() => (window as never as { progressShown: string[] }).progressShown);
+  expect(shown.some((text) => /^\S+, \d+ %$/.test(text))).toBe(true);
   await page.getByRole("tab", { name: "View" }).click();
   await page.locator("#left").getByRole("button", { name: "Hide flange" }).waitFor();
 
@@ -93,19 +121,19 @@ test("an STL is dropped, its unit stated, placed, built, saved and opened again"
   expect(readFileSync(saved, "utf8")).toContain("flange");
   const rebuilt = join(server.folder, "again.vicinity");
   vicinity(["build", saved, "-o", rebuilt]);
-  const near = ["0.44", "0.04", "0.02"]; // 20 mm beside the flange
+  const near = [x + 0.14, 0.04, 0.02].map(String); // 20 mm beside the flange
   const of = (field: string): unknown => JSON.parse(vicinity(["query", field, "--json", "--", ...near]));
   expect(existsSync(join(server.folder, "mine.vicinity"))).toBe(true);
   expect(of(join(server.folder, "mine.vicinity"))).toEqual(of(rebuilt));
   expect(of(rebuilt)).toMatchObject({ kind: "neighbour", object: "flange", rank: 1, viscosity: 30 });
 
   // Opened again, by a page that knows nothing of it.
-  const again = await openPage(browser, server.address);
+  const again = await openPage(server.address);
   await again.page.getByRole("tab", { name: "Edit scene" }).click();
   await again.page.getByLabel("Open", { exact: true }).selectOption("mine.yaml");
   await again.page.getByText("mine.yaml is open; build it to feel it.").waitFor();
   await again.page.locator("#left").getByRole("button", { name: "flange", exact: true }).click();
-  expect(await again.page.getByLabel("Place x").inputValue()).toBe("0.3");
+  expect(await again.page.getByLabel("Place x").inputValue()).toBe(String(x));
   expect(await again.page.getByLabel("Coding", { exact: true }).inputValue()).toBe("30, 20, 10");
   expect(again.complaints).toEqual([]);
   await again.page.context().close();

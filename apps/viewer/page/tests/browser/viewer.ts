@@ -2,24 +2,46 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // A server on a free port and a page in headless Chromium, for tests. Environment: VICINITY, the
-// program; CHROMIUM, the browser (default /usr/bin/chromium).
+// program; VICINITY_SCENES, the folder of scenes; CHROMIUM, the browser (default /usr/bin/chromium).
 import { spawn, spawnSync, type ChildProcess } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium, type Browser, type Page } from "playwright-core";
+import type { Hello, Vec3 } from "../../src/protocol/hello";
+import type { Snapshot } from "../../src/protocol/snapshot";
 
-export const repository = fileURLToPath(new URL("../../../../../", import.meta.url));
+const repository = fileURLToPath(new URL("../../../../../", import.meta.url));
 const program = resolve(process.env.VICINITY ?? join(repository, "build/release/apps/cli/vicinity"));
 const browserPath = process.env.CHROMIUM ?? "/usr/bin/chromium";
+
+/** The demo's cell, and its arm between the risers, before the vessel. */
+export const hotCell = join(process.env.VICINITY_SCENES ?? join(repository, "scenes"), "hot_cell.yaml");
+export const hotCellStart = "0.08,-0.15,0,2.416,0,-0.695,0";
+
+declare global {
+  interface Window {
+    /** What the page tells scripts (src/main.ts). */
+    vicinity: {
+      hello(): Hello;
+      snapshot(): Snapshot;
+      frameTimes(): number[];
+      onPage(point: Vec3): { x: number; y: number };
+      picture(): string;
+      slice(): string;
+    };
+  }
+}
 
 for (const needed of [program, browserPath]) {
   if (!existsSync(needed)) throw new Error(`${needed} is not there: set VICINITY and CHROMIUM`);
 }
 
 export function scratchFolder(): string {
-  return mkdtempSync(join(tmpdir(), "vicinity-page-"));
+  const folder = mkdtempSync(join(tmpdir(), "vicinity-page-"));
+  process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
+  return folder;
 }
 
 /** Runs the program to its end. @return what it printed */
@@ -59,8 +81,23 @@ export class Server {
   }
 }
 
-export function launch(): Promise<Browser> {
-  return chromium.launch({
+let built: string | null = null;
+
+/** The hot cell at 12 mm, built once for all tests. */
+export function hotCellField(): string {
+  if (built === null) {
+    const field = join(scratchFolder(), "hot_cell.vicinity");
+    vicinity(["build", hotCell, "--voxel-size", "0.012", "-o", field]);
+    built = field;
+  }
+  return built;
+}
+
+let launched: Promise<Browser> | null = null;
+
+/** One browser for all tests; it ends with them. */
+export function theBrowser(): Promise<Browser> {
+  launched ??= chromium.launch({
     executablePath: browserPath,
     args: [
       "--no-sandbox",
@@ -70,7 +107,11 @@ export function launch(): Promise<Browser> {
       "--disable-background-networking",
     ],
   });
+  return launched;
 }
+
+/** Of one wait: a page that a busy machine draws is slow, one that has hung is not waited for. */
+export const longestWait_ms = 120_000;
 
 /** A page and everything that its console complained about. */
 export interface OpenPage {
@@ -79,21 +120,21 @@ export interface OpenPage {
 }
 
 export async function openPage(
-  browser: Browser,
   address: string,
-  options: { width?: number; height?: number; zoom?: number } = {},
+  options: { width?: number; height?: number; zoom?: number; before?: (page: Page) => Promise<void> } = {},
 ): Promise<OpenPage> {
   const zoom = options.zoom ?? 1;
-  const context = await browser.newContext({
+  // Small, because a processor draws it; as wide as both panels need beside the view.
+  const context = await (await theBrowser()).newContext({
     viewport: {
-      width: Math.round((options.width ?? 1100) / zoom),
-      height: Math.round((options.height ?? 640) / zoom),
+      width: Math.round((options.width ?? 1012) / zoom),
+      height: Math.round((options.height ?? 560) / zoom),
     },
     deviceScaleFactor: zoom,
     colorScheme: "dark",
   });
   const page = await context.newPage();
-  page.setDefaultTimeout(60_000);
+  page.setDefaultTimeout(longestWait_ms);
   const complaints: string[] = [];
   page.on("console", (message) => {
     // A software renderer tells that reading pixels back is slow; that is no fault of the page.
@@ -101,6 +142,7 @@ export async function openPage(
     if (["error", "warning"].includes(message.type()) && !isAboutReading) complaints.push(message.text());
   });
   page.on("pageerror", (error) => complaints.push(error.message));
+  await options.before?.(page);
   await page.goto(address);
   await ready(page);
   return { page, complaints };
@@ -111,4 +153,52 @@ export async function ready(page: Page): Promise<void> {
   await page.waitForFunction(() => document.documentElement.dataset.ready === "true", null, {
     polling: 20,
   });
+}
+
+export type Rgb = [red: number, green: number, blue: number];
+
+/** Colours that the view shows at points of the workplace, 0..255. */
+export async function coloursAt(page: Page, points: readonly Vec3[]): Promise<Rgb[]> {
+  return page.evaluate(async (points) => {
+    const png = atob(window.vicinity.picture().split(",")[1]!);
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(png, (c) => c.charCodeAt(0))]));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d")!;
+    context.drawImage(bitmap, 0, 0);
+    const box = document.getElementById("canvas")!.getBoundingClientRect();
+    return points.map((point) => {
+      const at = window.vicinity.onPage(point);
+      const [x, y] = [(at.x - box.left) * devicePixelRatio, (at.y - box.top) * devicePixelRatio];
+      const [red, green, blue] = context.getImageData(Math.floor(x), Math.floor(y), 1, 1).data;
+      return [red!, green!, blue!] as [number, number, number];
+    });
+  }, points as Vec3[]);
+}
+
+/** What `vicinity query` says of many points at once. */
+export interface Queried {
+  point: Vec3;
+  kind: string;
+  object: string;
+  rank: number;
+  viscosity: number;
+}
+
+export function query(field: string, points: readonly Vec3[]): Queried[] {
+  const lines = vicinity(["query", field], ["x,y,z", ...points.map((point) => point.join(","))].join("\n") + "\n");
+  const [head, ...rows] = lines.trim().split("\n").map((line) => line.split(","));
+  return rows.map((row, n) => {
+    const of = (name: string): string => row[head!.indexOf(name)] ?? "";
+    const [rank, viscosity] = [Number(of("rank")), Number(of("viscosity"))];
+    return { point: points[n]!, kind: of("kind"), object: of("object"), rank, viscosity };
+  });
+}
+
+/** Drops a file on the page as a person does, from a folder of this machine. */
+export async function dropFile(page: Page, file: string): Promise<void> {
+  const browser = await page.context().newCDPSession(page);
+  const data = { items: [], files: [file], dragOperationsMask: 1 };
+  for (const type of ["dragEnter", "dragOver", "drop"] as const) {
+    await browser.send("Input.dispatchDragEvent", { type, x: 500, y: 200, data });
+  }
+  await browser.detach();
 }
