@@ -15,6 +15,7 @@ packages=(
   libpugixml-dev                     # robots
   nlohmann-json3-dev libxxhash-dev   # what a field file says of itself, and its checksums
   libcli11-dev                       # command line
+  libzstd-dev                        # recordings in MCAP
   libcairo2-dev fonts-dejavu-core    # pictures
   libembree-dev                      # the report's measured peer: nearest surface by a tree
   libmujoco-dev libqhull-dev         # vicinity simulate; the first is not found without the second

@@ -229,7 +229,8 @@ void add_replay(CLI::App& parent, Run& run) {
       ->excludes("--points-per-m2");
   add_feel(app, options->arm);
   app.add_option("--trajectory", options->trajectory,
-                 "joint log: CSV with a header; positions run smoothly between its lines");
+                 "joint log: CSV with a header, or .mcap with ROS 2 joint states; positions run "
+                 "smoothly between its lines");
   app.add_option("--columns", options->columns,
                  "which column is what, with a factor for its unit: t=Time*0.001,joint_1=Position1,"
                  "qd_joint_1=Velocity1; default: t or time, and the joints' names");
@@ -240,7 +241,7 @@ void add_replay(CLI::App& parent, Run& run) {
   app.add_flag("--realtime", options->real_time, "at the rate's pace, not as fast as it can");
   app.add_flag("--check-only", options->check_only,
                "load field and robot (and log), say what is odd, tick nothing");
-  app.add_option("-o,--output", options->output, "what came out, by tick: CSV, or .jsonl");
+  app.add_option("-o,--output", options->output, "what came out, by tick: CSV, .jsonl or .mcap");
   app.add_option("--plot", options->plot, "draw it: .svg or .png");
   app.add_flag("--json", options->json, "the summary, for programs");
   command.runs(replay, run);

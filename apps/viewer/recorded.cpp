@@ -15,6 +15,7 @@
 #include "protocol.h"
 #include "replay/arm.h"
 #include "replay/csv_table.h"
+#include "replay/log_text.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/robot/forward_kinematics.h"
 
@@ -188,7 +189,7 @@ nlohmann::ordered_json json_of(const Recorded& recorded, std::uint32_t number) {
 
 Recorded read_recorded(const std::filesystem::path& path, const std::string& name,
                        const RobotModel& robot) {
-  cli::CsvTable table(path);
+  cli::CsvTable table(name, cli::read_log_text(path).csv);
   const Header header = header_of(table, name);
   const Rows rows = read_rows(table, header, name);
   Recorded recorded;

@@ -20,6 +20,7 @@
 #include "replay/joint_log.h"
 #include "replay/joint_trajectory.h"
 #include "replay/loop.h"
+#include "replay/mcap_recording.h"
 #include "replay/recording.h"
 #include "replay/recording_file.h"
 #include "replay/replay_plot.h"
@@ -59,7 +60,8 @@ double length_of(const ReplayOptions& options, const JointTrajectory& trajectory
 }
 
 // A long run must not end with a file that cannot be written.
-void refuse_unwritable(const ReplayOptions& options) {
+void refuse_unwritable(const ReplayOptions& options, double first_s, double last_s) {
+  if (is_mcap(options.output)) check_times(first_s, last_s, options.trajectory.string());
   if (!options.plot.empty()) Canvas(options.plot, 1, 1);
   for (const std::filesystem::path& path : {options.output, options.plot}) {
     if (path.empty()) continue;
@@ -80,7 +82,8 @@ int run(const ReplayOptions& options, const ViscosityField& field, const Arm& ar
   const Pace pace{.rate = rate,
                   .ticks = tick_count(length_of(options, trajectory), rate),
                   .real_time = options.real_time};
-  refuse_unwritable(options);
+  const double t_start = trajectory.log().t.front();
+  refuse_unwritable(options, t_start, t_start + static_cast<double>(pace.ticks) / rate);
   const WhileWriting to_the_end;  // a signal ends the loop; what there is by then is written
   Recording recording(pace.ticks, arm.robot.coordinates.size());
   Teleoperation teleoperation(arm.robot, arm.points, field, arm.teleoperation);
@@ -94,12 +97,12 @@ int run(const ReplayOptions& options, const ViscosityField& field, const Arm& ar
                               .arm = arm,
                               .points = arm.points.count(),
                               .pace = pace,
-                              .t_start = trajectory.log().t.front(),
+                              .t_start = t_start,
                               .recording = recording,
                               .loop = loop,
                               .statistics = statistics_of(recording.ticks())};
   if (!options.output.empty()) {
-    write_recording(recording, arm.robot, field, outcome.t_start, options.output);
+    write_recording(recording, arm, field, t_start, options.output);
   }
   if (!options.plot.empty()) {
     plot_replay(outcome, options.field, options.trajectory, options.plot);

@@ -22,7 +22,7 @@ struct ReplayOptions {
   std::optional<double> duration;    ///< there and back until then [s]; else the log once
   bool real_time = false;
   bool check_only = false;
-  std::filesystem::path output;  ///< .jsonl: JSON lines; else CSV; empty: the summary alone
+  std::filesystem::path output;  ///< .mcap, .jsonl; else CSV; empty: the summary alone
   std::filesystem::path plot;    ///< .svg or .png; empty: none
   bool json = false;
 };

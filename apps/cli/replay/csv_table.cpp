@@ -4,8 +4,6 @@
 #include "replay/csv_table.h"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include "vicinity/geometry/error.h"
@@ -29,14 +27,7 @@ std::string_view unquoted(std::string_view cell) {
 
 }  // namespace
 
-CsvTable::CsvTable(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  text_ = std::move(bytes).str();
-  if (!file || text_.empty()) {
-    throw Error({.where = path.string(), .what = "the log is empty or cannot be read"});
-  }
+CsvTable::CsvTable(const std::string& where, std::string text) : text_(std::move(text)) {
   if (text_.starts_with(byte_order_mark)) at_ = byte_order_mark.size();
   // The separator is what the first line with anything in it has most of.
   const std::size_t begin = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size());
@@ -48,7 +39,7 @@ CsvTable::CsvTable(const std::filesystem::path& path) {
     }
   }
   Line line;
-  if (!next(line)) throw Error({.where = path.string(), .what = "the log has no header"});
+  if (!next(line)) throw Error({.where = where, .what = "the log has no header"});
   header_.assign(line.cells.begin(), line.cells.end());
 }
 

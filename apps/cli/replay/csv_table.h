@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,8 +20,8 @@ class CsvTable {
     std::vector<std::string_view> cells;  ///< without blanks and quotes around them
   };
 
-  /// Errors: throws Error for a file that cannot be read or has no header.
-  explicit CsvTable(const std::filesystem::path& path);
+  /// @param where  names the text in errors. Errors: throws Error for a text without a header.
+  CsvTable(const std::string& where, std::string text);
   CsvTable(const CsvTable&) = delete;
   CsvTable& operator=(const CsvTable&) = delete;
 

@@ -13,9 +13,11 @@
 #include <numbers>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "replay/csv_table.h"
 #include "replay/log_oddities.h"
+#include "replay/log_text.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/geometry/nearest_word.h"
 
@@ -219,10 +221,12 @@ JointLog read_joint_log(const std::filesystem::path& path, const RobotModel& rob
     joints.push_back(robot.joints[static_cast<std::size_t>(joint)].name);
   }
   refuse_unknown_quantities(columns, joints);
-  CsvTable table(path);
+  LogText text = read_log_text(path);
+  CsvTable table(where, std::move(text.csv));
   const Sources sources = sources_of(Columns(where, table.header(), columns), robot, joints);
 
   JointLog log;
+  log.remarks = std::move(text.remarks);
   std::vector<double> q, qd;
   std::vector<std::size_t> lines;
   for (CsvTable::Line line; table.next(line);) {

@@ -21,7 +21,8 @@ struct JointLog {
   std::vector<std::string> remarks = {};  ///< what is odd about it, one sentence each
 };
 
-/// Reads a log for a robot. Where `columns` does not say which column is what, time is `t` or
+/// Reads a log for a robot: CSV, or the joint states of an MCAP recording (.mcap), whose columns
+/// mcap_as_csv() names. Where `columns` does not say which column is what, time is `t` or
 /// `time`, a joint's position has the joint's name, its velocity `qd_` and the name; velocities are
 /// taken if there is one for every joint. A unit in brackets behind a column's name ("Time [ms]",
 /// "joint_1 (deg)") is heeded unless the map states a factor, and need not be part of the name.

@@ -12,7 +12,7 @@
 
 #include "commands/csv_cell.h"
 #include "fresh_file.h"
-#include "replay/arm.h"
+#include "replay/mcap_recording.h"
 
 namespace vicinity::cli {
 namespace {
@@ -110,15 +110,31 @@ class Lines {
   bool first_ = true;
 };
 
+void write_mcap(const Recording& recording, const Arm& arm, const ViscosityField& field,
+                double t_start, FreshFile& file) {
+  McapRecording out([&](std::string_view bytes) { file.write(bytes); }, arm.robot, field,
+                    arm.teleoperation.tool_link);
+  for (std::size_t k = 0; k < recording.ticks().size(); ++k) {
+    const TickRecord& tick = recording.ticks()[k];
+    out.add(nanoseconds(t_start + tick.time_s), recording.position(k), recording.torque(k),
+            tick.tool, tick.master_force, tick.reason, arm.X_WB, to_string(tick.status),
+            FeltMessages::level_of(tick.status));
+  }
+  out.file().finish();
+  file.commit();
+}
+
 }  // namespace
 
-void write_recording(const Recording& recording, const RobotModel& robot,
-                     const ViscosityField& field, double t_start,
-                     const std::filesystem::path& path) {
+bool is_mcap(const std::filesystem::path& path) { return path.extension() == ".mcap"; }
+
+void write_recording(const Recording& recording, const Arm& arm, const ViscosityField& field,
+                     double t_start, const std::filesystem::path& path) {
+  FreshFile file(path);
+  if (is_mcap(path)) return write_mcap(recording, arm, field, t_start, file);
   constexpr std::size_t piece = std::size_t{1} << 20;
   const Format format = path.extension() == ".jsonl" ? Format::json_lines : Format::csv;
-  const Words words = words_of(robot, field, format);
-  FreshFile file(path);
+  const Words words = words_of(arm.robot, field, format);
   Lines lines(format, words);
   if (format == Format::csv) lines.header();
   for (std::size_t k = 0; k < recording.ticks().size(); ++k) {

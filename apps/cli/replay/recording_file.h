@@ -6,8 +6,8 @@
 
 #include <filesystem>
 
+#include "replay/arm.h"
 #include "replay/recording.h"
-#include "vicinity/robot/robot_model.h"
 #include "vicinity/viscosity/field.h"
 
 namespace vicinity::cli {
@@ -18,10 +18,15 @@ namespace vicinity::cli {
 /// is felt; its object, rank and distance are, where the point has left and only remembers. No
 /// distance is known in boundary and inner voxels but zero.
 ///
+/// A name that ends in .mcap gives an MCAP file of ROS 2 messages: see McapRecording.
+///
 /// @param t_start  time of the first tick, in the log's own count [s]
-/// Errors: throws Error where the file cannot be written; nothing is left behind then.
-void write_recording(const Recording& recording, const RobotModel& robot,
-                     const ViscosityField& field, double t_start,
-                     const std::filesystem::path& path);
+/// Errors: throws Error where the file cannot be written; nothing is left behind then. Of an MCAP
+/// file check_times() first.
+void write_recording(const Recording& recording, const Arm& arm, const ViscosityField& field,
+                     double t_start, const std::filesystem::path& path);
+
+/// Whether its name says that it is an MCAP file.
+bool is_mcap(const std::filesystem::path& path);
 
 }  // namespace vicinity::cli
