@@ -9,12 +9,13 @@ set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 jobs=$(nproc)
 
-"$repository/scripts/install_packages.sh" --viewer --viewer-tests
+"$repository/scripts/install_packages.sh" --python --viewer --viewer-tests
 cd "$repository"
 
 for preset in release asan_ubsan; do
   echo "== $preset"
-  cmake --preset "$preset" -DVICINITY_SIMULATION=ON
+  # Python itself is not built for the sanitizers.
+  cmake --preset "$preset" -DVICINITY_PYTHON="$([[ $preset == release ]] && echo ON || echo OFF)"
   cmake --build --preset "$preset"
   ctest --preset "$preset" -j "$jobs"
 done

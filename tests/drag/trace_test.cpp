@@ -50,6 +50,26 @@ TEST(Trace, SamplesTheTrackEvenlyAndItsEnd) {
   EXPECT_DOUBLE_EQ(uneven.back().t, 2.5);
 }
 
+TEST(Trace, FollowsAPathAsTheTrackThatPassesThere) {
+  const ViscosityField field = slabs();
+  const Track track{.from_W = {0, 5, 5}, .to_W = {33.9, 5, 5}, .speed = 0.5, .rate = 10};
+  const DragOptions options{.area = 0.25, .memory = named_memory("short")};
+  const auto along_track = trace(field, track, options);
+  std::vector<Vec3> path;
+  for (const TraceSample& sample : along_track) path.push_back(sample.p_WR);
+  const auto along_path = trace(field, path, track.rate, options);
+  ASSERT_EQ(along_path.size(), path.size());
+  EXPECT_EQ(along_path.front().force_W, Vec3(0, 0, 0));
+  for (std::size_t n = 1; n < path.size(); ++n) {
+    EXPECT_EQ(along_path[n].p_WR, path[n]);
+    EXPECT_EQ(along_path[n].mu_e, along_track[n].mu_e);
+    EXPECT_NEAR((along_path[n].force_W - along_track[n].force_W).norm(), 0, 1e-10);
+  }
+  EXPECT_TRUE(trace(field, std::vector<Vec3>()).empty());
+  path[7].z() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(trace(field, path), Error);
+}
+
 TEST(Trace, FeelsEachRankAsMuTimesAreaTimesSpeed) {
   const auto samples = trace(slabs(), {.from_W = {0, 5, 5}, .to_W = {33.9, 5, 5}, .speed = 0.5},
                              {.area = 0.25, .memory = {}});

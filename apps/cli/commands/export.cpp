@@ -11,32 +11,19 @@
 #include <vector>
 
 #include "arguments.h"
+#include "interruption.h"
 #include "progress_bar.h"
 #include "readable.h"
 #include "vicinity/viscosity/field_file.h"
-#include "volume/npy_file.h"
+#include "vicinity/viscosity/npy_file.h"
+#include "vicinity/viscosity/vti_file.h"
 #include "volume/vdb_file.h"
-#include "volume/vti_file.h"
 
 namespace vicinity::cli {
 namespace {
 
 // More than this is a plant room by mistake: no viewer opens it.
 constexpr std::uint64_t most_bytes = 16'000'000'000;
-
-VoxelBox voxels_within(const Workspace& grid, const Box& box) {
-  const Vec3 lo = grid.to_grid(box.min()), hi = grid.to_grid(box.max());
-  // A corner on a voxel's face does not ask for the voxel behind it.
-  const auto first = [](double g, std::int32_t n) {
-    return static_cast<std::int32_t>(std::clamp(std::floor(g + 1e-6), 0.0, static_cast<double>(n)));
-  };
-  const auto last = [](double g, std::int32_t n) {
-    return static_cast<std::int32_t>(std::clamp(std::ceil(g - 1e-6), 0.0, static_cast<double>(n)));
-  };
-  const VoxelIndex& dims = grid.dims;
-  return {{first(lo.x(), dims.i), first(lo.y(), dims.j), first(lo.z(), dims.k)},
-          {last(hi.x(), dims.i), last(hi.y(), dims.j), last(hi.z(), dims.k)}};
-}
 
 void refuse_absurd_size(const ExportOptions& options, const VoxelBox& box, std::uint64_t size) {
   std::error_code no_matter;
@@ -79,11 +66,6 @@ int export_field(const ExportOptions& options, std::ostream& out, std::ostream& 
                  .found = options.box,
                  .hint = "vicinity info " + options.field.string() + " to see its corners"});
   }
-  if (quantities.front() == VoxelQuantity::distance && !field.keeps_distance()) {
-    throw Error({.where = options.field.string(),
-                 .what = "keeps no distances",
-                 .hint = "building it with --shape distance"});
-  }
   const std::uint64_t voxels = static_cast<std::uint64_t>(box.hi.i - box.lo.i) *
                                static_cast<std::uint64_t>(box.hi.j - box.lo.j) *
                                static_cast<std::uint64_t>(box.hi.k - box.lo.k);
@@ -92,7 +74,11 @@ int export_field(const ExportOptions& options, std::ostream& out, std::ostream& 
   }
   {
     ProgressBar bar(err);
-    const auto progress = [&](double done) { bar.show("export", done); };
+    const WhileWriting finish_first;
+    const auto progress = [&](double done) {
+      stop_if_interrupted();
+      bar.show("export", done);
+    };
     switch (format) {
       case Format::npy:
         write_npy(field, box, quantities.front(), options.output, progress);

@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "volume/voxel_quantity.h"
+#include "vicinity/viscosity/voxel_quantity.h"
 
 namespace vicinity::cli {
 

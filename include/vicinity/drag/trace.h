@@ -4,6 +4,7 @@
 /// A point on a straight track, and the drag it feels on the way (fig. 22-24, 26-29).
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "vicinity/drag/drag.h"
@@ -46,5 +47,16 @@ struct TraceSample {
 /// negative area, and a track of more than ten million samples.
 std::vector<TraceSample> trace(const ViscosityField& field, const Track& track,
                                const DragOptions& options = {});
+
+/// The same along a path of one's own.
+///
+/// @param path_W  positions, one every 1/rate seconds, shape (N, 3) [m]
+/// @param rate    [Hz]
+/// @return        one sample for each position. The velocity is the difference from the position
+///                before; at the first one the point is at rest.
+/// Errors: throws Error for a position that is not finite, a rate that is not positive, and a
+/// negative area.
+std::vector<TraceSample> trace(const ViscosityField& field, std::span<const Vec3> path_W,
+                               double rate = Track().rate, const DragOptions& options = {});
 
 }  // namespace vicinity

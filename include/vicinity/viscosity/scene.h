@@ -58,6 +58,7 @@ struct SceneRobot {
   std::string tool;                  ///< frame of the tool
 };
 
+/// A workplace: its objects, how finely it is seen, and the arm in it.
 struct Scene {
   double voxel_size = 0.005;  ///< h [m]
   std::optional<Box> bounds;  ///< in W [m]; where absent, all objects with all their layers

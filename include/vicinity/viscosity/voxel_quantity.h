@@ -10,8 +10,9 @@
 
 #include "vicinity/viscosity/field.h"
 
-namespace vicinity::cli {
+namespace vicinity {
 
+/// What of a voxel.
 enum class VoxelQuantity {
   rank,       ///< int16: boundary 0, ranks 1..q, empty -1, inner -2
   viscosity,  ///< float32: at the voxel's centre [N·s/m³]
@@ -25,6 +26,10 @@ const char* to_string(VoxelQuantity quantity) noexcept;
 /// Two bytes for int16, four for float32.
 std::size_t size_of(VoxelQuantity quantity) noexcept;
 
+/// The voxels of a grid that a box [m] has a share in; a corner on a voxel's face does not ask for
+/// the voxel behind it.
+VoxelBox voxels_within(const Workspace& grid, const Box& box) noexcept;
+
 /// Which axis runs fastest in memory: x in VTK's images, z in a C-ordered array [x][y][z].
 enum class Fastest { x, z };
 
@@ -33,6 +38,7 @@ enum class Fastest { x, z };
 class VoxelPlanes {
  public:
   /// @param box  the voxels wanted, within the workspace of the field
+  /// Errors: throws Error for distances of a field that keeps none.
   VoxelPlanes(const ViscosityField& field, const VoxelBox& box, VoxelQuantity quantity,
               Fastest fastest);
 
@@ -51,4 +57,4 @@ class VoxelPlanes {
   std::vector<std::byte> bytes_;
 };
 
-}  // namespace vicinity::cli
+}  // namespace vicinity

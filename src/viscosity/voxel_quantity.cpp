@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "volume/voxel_quantity.h"
+#include "vicinity/viscosity/voxel_quantity.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
-namespace vicinity::cli {
+#include "vicinity/geometry/error.h"
+
+namespace vicinity {
 
 static_assert(std::endian::native == std::endian::little, "the exports are little-endian");
 
@@ -29,9 +33,27 @@ std::size_t size_of(VoxelQuantity quantity) noexcept {
   return quantity == VoxelQuantity::rank || quantity == VoxelQuantity::object ? 2 : 4;
 }
 
+VoxelBox voxels_within(const Workspace& grid, const Box& box) noexcept {
+  const Vec3 lo = grid.to_grid(box.min()), hi = grid.to_grid(box.max());
+  const auto first = [](double g, std::int32_t n) {
+    return static_cast<std::int32_t>(std::clamp(std::floor(g + 1e-6), 0.0, static_cast<double>(n)));
+  };
+  const auto last = [](double g, std::int32_t n) {
+    return static_cast<std::int32_t>(std::clamp(std::ceil(g - 1e-6), 0.0, static_cast<double>(n)));
+  };
+  const VoxelIndex& dims = grid.dims;
+  return {{first(lo.x(), dims.i), first(lo.y(), dims.j), first(lo.z(), dims.k)},
+          {last(hi.x(), dims.i), last(hi.y(), dims.j), last(hi.z(), dims.k)}};
+}
+
 VoxelPlanes::VoxelPlanes(const ViscosityField& field, const VoxelBox& box, VoxelQuantity quantity,
                          Fastest fastest)
-    : field_(field), box_(box), quantity_(quantity), fastest_(fastest) {}
+    : field_(field), box_(box), quantity_(quantity), fastest_(fastest) {
+  if (quantity != VoxelQuantity::distance || field.keeps_distance()) return;
+  throw Error({.where = "distance",
+               .what = "the field keeps none",
+               .hint = "building it with --shape distance, or shape: distance in its scene"});
+}
 
 std::int32_t VoxelPlanes::count() const noexcept {
   return fastest_ == Fastest::x ? box_.hi.k - box_.lo.k : box_.hi.i - box_.lo.i;
@@ -101,4 +123,4 @@ const std::vector<std::byte>& VoxelPlanes::plane(std::int32_t at) {
   return bytes_;
 }
 
-}  // namespace vicinity::cli
+}  // namespace vicinity

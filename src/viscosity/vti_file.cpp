@@ -1,23 +1,24 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "volume/vti_file.h"
+#include "vicinity/viscosity/vti_file.h"
 
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <span>
 #include <string>
 
-#include "fresh_file.h"
+#include "file_beside.h"
 
-namespace vicinity::cli {
+namespace vicinity {
 
 void write_vti(const ViscosityField& field, const VoxelBox& box, VoxelQuantity quantity,
                const std::filesystem::path& path, const std::function<void(double)>& progress) {
   const Workspace& grid = field.workspace();
   const auto& [lo, hi] = box;
   const std::string extent = fmt::format("{} {} {} {} {} {}", lo.i, hi.i, lo.j, hi.j, lo.k, hi.k);
-  FreshFile file(path);
+  FileBeside file(path);
   file.write(fmt::format(
       R"(<?xml version="1.0"?>
 <VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
@@ -35,16 +36,14 @@ void write_vti(const ViscosityField& field, const VoxelBox& box, VoxelQuantity q
   const std::uint64_t bytes_of_data = size_of(quantity) * static_cast<std::uint64_t>(hi.i - lo.i) *
                                       static_cast<std::uint64_t>(hi.j - lo.j) *
                                       static_cast<std::uint64_t>(hi.k - lo.k);
-  file.write(&bytes_of_data, sizeof bytes_of_data);
+  file.write(std::as_bytes(std::span(&bytes_of_data, 1)));
   VoxelPlanes planes(field, box, quantity, Fastest::x);
   for (std::int32_t k = 0; k < planes.count(); ++k) {
-    const auto& bytes = planes.plane(k);
-    file.write(bytes.data(), bytes.size());
-    stop_if_interrupted();
+    file.write(planes.plane(k));
     progress(static_cast<double>(k + 1) / planes.count());
   }
   file.write("\n  </AppendedData>\n</VTKFile>\n");
-  file.commit();
+  file.move_into_place();
 }
 
-}  // namespace vicinity::cli
+}  // namespace vicinity

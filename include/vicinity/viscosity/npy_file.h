@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <functional>
 
-#include "volume/voxel_quantity.h"
+#include "vicinity/viscosity/voxel_quantity.h"
 
-namespace vicinity::cli {
+namespace vicinity {
 
 /// Writes an array of shape (nx, ny, nz) in C order, and beside it a .json of the same name with
 /// origin [m], voxel size [m], dims and what the values are.
@@ -18,4 +18,4 @@ namespace vicinity::cli {
 void write_npy(const ViscosityField& field, const VoxelBox& box, VoxelQuantity quantity,
                const std::filesystem::path& path, const std::function<void(double)>& progress);
 
-}  // namespace vicinity::cli
+}  // namespace vicinity

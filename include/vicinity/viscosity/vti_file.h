@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <functional>
 
-#include "volume/voxel_quantity.h"
+#include "vicinity/viscosity/voxel_quantity.h"
 
-namespace vicinity::cli {
+namespace vicinity {
 
 /// Writes VTK XML ImageData with one cell per voxel, its values appended raw.
 /// @param progress  called with the share that is done, 0..1
@@ -17,4 +17,4 @@ namespace vicinity::cli {
 void write_vti(const ViscosityField& field, const VoxelBox& box, VoxelQuantity quantity,
                const std::filesystem::path& path, const std::function<void(double)>& progress);
 
-}  // namespace vicinity::cli
+}  // namespace vicinity

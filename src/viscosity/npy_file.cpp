@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "volume/npy_file.h"
+#include "vicinity/viscosity/npy_file.h"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "fresh_file.h"
+#include "file_beside.h"
 
-namespace vicinity::cli {
+namespace vicinity {
 namespace {
 
 // Format version 1.0: magic, version, length of what follows, a Python dictionary padded with
@@ -53,19 +53,17 @@ std::string description(const ViscosityField& field, const VoxelBox& box, VoxelQ
 
 void write_npy(const ViscosityField& field, const VoxelBox& box, VoxelQuantity quantity,
                const std::filesystem::path& path, const std::function<void(double)>& progress) {
-  FreshFile array(path);
-  FreshFile beside(std::filesystem::path(path).replace_extension(".json"));
+  FileBeside array(path);
+  FileBeside beside(std::filesystem::path(path).replace_extension(".json"));
   array.write(header(box, quantity));
   VoxelPlanes planes(field, box, quantity, Fastest::z);
   for (std::int32_t i = 0; i < planes.count(); ++i) {
-    const auto& bytes = planes.plane(i);
-    array.write(bytes.data(), bytes.size());
-    stop_if_interrupted();
+    array.write(planes.plane(i));
     progress(static_cast<double>(i + 1) / planes.count());
   }
   beside.write(description(field, box, quantity));
-  beside.commit();
-  array.commit();
+  beside.move_into_place();
+  array.move_into_place();
 }
 
-}  // namespace vicinity::cli
+}  // namespace vicinity

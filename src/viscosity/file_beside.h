@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+/// A file that appears whole or not at all: written beside, then renamed into place.
+#pragma once
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace vicinity {
+
+/// An open file, closed when it goes out of scope.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(); }
+
+  int get() const noexcept { return fd_; }
+  /// Whether all went well; some file systems report a full disk only here.
+  bool close() noexcept { return fd_ < 0 || ::close(std::exchange(fd_, -1)) == 0; }
+
+ private:
+  int fd_;
+};
+
+/// Errors: throws Error with the system's own words.
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what, int error);
+
+/// A new file beside another, removed unless it is moved into place.
+/// Errors: every function throws Error where the disk is full or the folder cannot be written.
+class FileBeside {
+ public:
+  explicit FileBeside(const std::filesystem::path& path);
+  FileBeside(const FileBeside&) = delete;
+  FileBeside& operator=(const FileBeside&) = delete;
+  ~FileBeside();
+
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+  void move_into_place();
+
+ private:
+  std::filesystem::path path_;
+  std::string beside_;
+  Descriptor file_;
+  bool in_place_ = false;
+};
+
+}  // namespace vicinity
