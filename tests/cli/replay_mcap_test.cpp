@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "mcap/reader.h"
@@ -122,6 +123,21 @@ TEST_F(Replay, AnMcapRecordingSaysWhatTheCsvSays) {
     ASSERT_EQ(value(status, "object"), row.at("reason_object")) << t;
     ASSERT_EQ(value(status, "rank"), row.at("reason_rank")) << t;
   }
+}
+
+// What Foxglove reads by. It compares all messages with the CSV, and exits with 0.
+TEST_F(Replay, ThePublicReaderReadsAnMcapRecordingAsTheCsv) {
+#ifdef VICINITY_MCAP_READER
+  const std::filesystem::path script = std::filesystem::path(VICINITY_MCAP_READER) / "read.mjs";
+  if (!std::filesystem::exists(script)) GTEST_SKIP() << "npm could not install the public reader";
+  ASSERT_EQ(replay("log.csv", {"-o", "felt.csv"}).code, 0);
+  ASSERT_EQ(replay("log.csv", {"-o", "felt.mcap"}).code, 0);
+  const std::string command = "node " + script.string() + " " + (*folder_ / "felt.mcap").string() +
+                              " " + (*folder_ / "felt.csv").string();
+  EXPECT_EQ(std::system(command.c_str()), 0) << command;
+#else
+  GTEST_SKIP() << "no npm: recordings are not opened with the public reader";
+#endif
 }
 
 TEST_F(Replay, ReplaysJointStatesThatSomebodyElseRecorded) {
