@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # What `cmake --install` lays down, so that find_package(vicinity) and pkg-config work from another
-# folder.
+# folder. The components are Debian's packages: VicinityPackages.cmake.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
