@@ -10,6 +10,8 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <memory>
+#include <span>
 
 namespace vicinity::viewer {
 namespace {
@@ -46,7 +48,14 @@ Cell cell_of(const VoxelRecord& record) {
 class Cells {
  public:
   Cells(const ViscosityField& field, int step)
-      : field_(field), step_(step), cells_(std::size_t{side} * side * side) {}
+      : field_(field),
+        step_(step),
+        is_skin_(std::make_unique<bool[]>(field.records().size())),
+        cells_(std::size_t{side} * side * side) {
+    for (std::size_t code = 0; code < field.records().size(); ++code) {
+      is_skin_[code] = cell_of(field.records()[code]).level == 0;
+    }
+  }
 
   /// @return whether the chunk itself holds anything
   bool fill(const VoxelIndex& first) {
@@ -77,7 +86,9 @@ class Cells {
     for (std::int32_t k = lo.k; k < lo.k + step_; k += piece) {
       for (std::int32_t j = lo.j; j < lo.j + step_; j += piece) {
         for (std::int32_t i = lo.i; i < lo.i + step_; i += piece) {
-          if (field_.brick_is_empty({i, j, k})) continue;
+          // Most bricks are layers: their tables tell that there is no skin to look for.
+          const std::span wanted(is_skin_.get(), field_.records().size());
+          if (!field_.brick_may_hold({i, j, k}, wanted)) continue;
           const Cell skin = skin_in({i, j, k}, piece);
           if (skin.level == 0) return skin;
         }
@@ -101,6 +112,7 @@ class Cells {
 
   const ViscosityField& field_;
   std::int32_t step_;
+  std::unique_ptr<bool[]> is_skin_;  // by code
   std::vector<Cell> cells_;
 };
 
