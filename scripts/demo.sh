@@ -37,5 +37,5 @@ fi
 cat <<END
 
   See it live, and drive the arm through it, at http://127.0.0.1:8080/ with
-    scripts/demo.sh --serve
+    scripts/demo.sh --serve${*:+ $*}
 END

@@ -10,6 +10,8 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <memory>
+#include <span>
 
 namespace vicinity::viewer {
 namespace {
@@ -46,7 +48,14 @@ Cell cell_of(const VoxelRecord& record) {
 class Cells {
  public:
   Cells(const ViscosityField& field, int step)
-      : field_(field), step_(step), cells_(std::size_t{side} * side * side) {}
+      : field_(field),
+        step_(step),
+        is_skin_(std::make_unique<bool[]>(field.records().size())),
+        cells_(std::size_t{side} * side * side) {
+    for (std::size_t code = 0; code < field.records().size(); ++code) {
+      is_skin_[code] = cell_of(field.records()[code]).level == 0;
+    }
+  }
 
   /// @return whether the chunk itself holds anything
   bool fill(const VoxelIndex& first) {
@@ -75,6 +84,7 @@ class Cells {
     // Bricks are aligned to multiples of eight, as cells are to multiples of their step, and the
     // array starts at zero. What a cell has beyond the array is empty, however large it is.
     const std::int32_t piece = std::min(step_, brick);
+    const std::span wanted(is_skin_.get(), field_.records().size());
     const VoxelIndex dims = field_.workspace().dims;
     const VoxelIndex from{std::max(lo.i, 0), std::max(lo.j, 0), std::max(lo.k, 0)};
     const VoxelIndex to{std::min(lo.i + step_, dims.i), std::min(lo.j + step_, dims.j),
@@ -82,7 +92,8 @@ class Cells {
     for (std::int32_t k = from.k; k < to.k; k += piece) {
       for (std::int32_t j = from.j; j < to.j; j += piece) {
         for (std::int32_t i = from.i; i < to.i; i += piece) {
-          if (field_.brick_is_empty({i, j, k})) continue;
+          // Most bricks are layers: their tables tell that there is no skin to look for.
+          if (!field_.brick_may_hold({i, j, k}, wanted)) continue;
           const Cell skin = skin_in({i, j, k}, piece);
           if (skin.level == 0) return skin;
         }
@@ -106,6 +117,7 @@ class Cells {
 
   const ViscosityField& field_;
   std::int32_t step_;
+  std::unique_ptr<bool[]> is_skin_;  // by code
   std::vector<Cell> cells_;
 };
 

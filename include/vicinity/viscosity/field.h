@@ -87,6 +87,12 @@ class ViscosityField {
   /// Whether the 8 x 8 x 8 voxels around v that are stored as one brick are all empty; true outside
   /// the workspace. Two loads; a mixed brick counts as not empty.
   bool brick_is_empty(const VoxelIndex& v) const noexcept;
+  /// Whether any of those voxels may have a code that is wanted: false where none has; true where
+  /// one has, and seldom elsewhere. Outside the workspace false.
+  /// @param wanted  by code, shape (records().size(),)
+  bool brick_may_hold(const VoxelIndex& v, std::span<const bool> wanted) const noexcept {
+    return codes_.holds(v) && codes_.brick_may_hold(v, wanted);
+  }
   /// Stored distance of a voxel's centre from the nearest surface of the object that the voxel
   /// belongs to, in voxels, rounded down; below zero where none is kept.
   double distance_vox_at(const VoxelIndex& v) const noexcept;

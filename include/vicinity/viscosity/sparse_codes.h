@@ -69,6 +69,22 @@ class SparseCodes {
     return holds(v) ? code(reference(v), v) : VoxelCode{0};
   }
 
+  /// Whether the brick of a voxel that it holds may have a voxel of a wanted code: goes by the
+  /// brick's table, which may list a code that no voxel has, and never leaves one out.
+  bool brick_may_hold(const VoxelIndex& v, std::span<const bool> wanted) const noexcept {
+    const std::uint32_t above = reference(v);
+    if (FieldReference::is_uniform(above)) return wanted[static_cast<VoxelCode>(above)];
+    const std::byte* const brick = brick_of(above);
+    const unsigned width = above >> FieldReference::width_shift;
+    const bool has_table = width < 4;
+    const std::byte* const codes = has_table ? brick + (std::size_t{64} << width) : brick;
+    const std::size_t count = has_table ? table_size(brick, width) : 512;
+    for (std::size_t n = 0; n < count; ++n) {
+      if (wanted[load_16(codes + n * 2)]) return true;
+    }
+    return false;
+  }
+
   /// code_at() of each. All lookups of a group take each step together, so that they wait for
   /// memory together: several times as fast as one by one where voxels lie far apart.
   void codes_at(std::span<const VoxelIndex> voxels, VoxelCode* codes) const noexcept;

@@ -3,6 +3,8 @@
 
 // The page beside a server that has the hot cell at a coarse resolution, and its arm: what is seen
 // and clicked is what the field holds.
+import { createServer } from "node:http";
+import type { AddressInfo } from "node:net";
 import type { Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, expect, test } from "vitest";
 import { boundaryColour, innerColour, innerHatchColour, rankColour, type Colour } from "../../src/colour/rank_palette";
@@ -179,7 +181,7 @@ test("two clicks measure the length between them", async () => {
   const length = Number(value) * (unit === "mm" ? 0.001 : 1);
   expect(Math.abs(length - Math.hypot(...from.map((x, n) => x - to[n]!)))).toBeLessThan(hello.field.voxelSize);
   await page.keyboard.press("Escape");
-  expect(await label.isHidden()).toBe(true);
+  await label.waitFor({ state: "hidden" });
 });
 
 test("an object that is hidden takes its layers with it, and comes back as it was", async () => {
@@ -235,10 +237,11 @@ test("keys list themselves, and turn dark into light, which can be read and is r
 });
 
 test("a page of another origin is refused", async () => {
-  const own = new URL(server.address);
-  const other = await Server.start([hotCellField()]);
+  // A site that allows itself everything.
+  const site = createServer((_, answer) => answer.setHeader("Content-Type", "text/html").end("<!doctype html>"));
+  await new Promise<void>((listening) => site.listen(0, "127.0.0.1", listening));
   const foreign = await (await (await theBrowser()).newContext()).newPage();
-  await foreign.goto(`${other.address}icon.svg`);
+  await foreign.goto(`http://127.0.0.1:${(site.address() as AddressInfo).port}/`);
   const outcome = await foreign.evaluate(async (address) => {
     const socket = new WebSocket(`ws://${address}/ws`);
     const opened = await new Promise<boolean>((resolve) => {
@@ -250,10 +253,10 @@ test("a page of another origin is refused", async () => {
       () => "refused",
     );
     return { opened, put };
-  }, own.host);
+  }, new URL(server.address).host);
   expect(outcome).toEqual({ opened: false, put: "refused" });
   await foreign.context().close();
-  await other.stop();
+  site.close();
 });
 
 test("at 200 % zoom on a laptop everything is reachable and nothing overflows", async () => {

@@ -91,10 +91,10 @@ test("a second recording stands beside it at the same time, and the same one loo
   const apart = await halves();
   expect(apart.alike).toBe(false); // each half has its own arm
   expect(await page.locator("#right .said").textContent()).toContain("two.csv");
-  await page.locator("#right").getByLabel("Right").selectOption("one.csv");
+  await page.locator("#right").getByLabel("Right", { exact: true }).selectOption("one.csv");
   await expect.poll(halves, { timeout: longestWait_ms }).toEqual({ alike: true, left: apart.left, right: apart.left });
   // Both start at the same place: what differs is their motion, not their drawing.
-  await page.locator("#right").getByLabel("Right").selectOption("two.csv");
+  await page.locator("#right").getByLabel("Right", { exact: true }).selectOption("two.csv");
   await scrubTo(0);
   await expect.poll(async () => (await halves()).alike, { timeout: longestWait_ms }).toBe(true);
   expect(complaints).toEqual([]);

@@ -34,8 +34,8 @@ test.each(["protanope", "deuteranope"] as const)("six ranks stay apart for a %s"
   }
 });
 
-// Pixels of docs/pictures/hot_cell.png, which the command line drew: the legend's six swatches, as
-// its drawing library rounds them.
+// Pixels of a picture that `vicinity slice` drew: its legend's six swatches, as its drawing library
+// rounds them.
 const drawn = ["#911b6a", "#bd3b5d", "#de654d", "#ef964e", "#f4c675", "#f6f3b4"];
 
 test("the page's colours are those of the command line's pictures", () => {
