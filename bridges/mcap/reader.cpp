@@ -91,6 +91,8 @@ std::string unpacked(std::string_view compression, std::string_view packed, std:
     if (packed.size() != size) throw Broken{"a chunk is not as long as it says"};
     return std::string(packed);
   }
+  // A cut that left zeros behind leaves half a name.
+  if (compression.find('\0') != std::string_view::npos) throw Broken{"a chunk is not whole"};
   if (compression != "zstd") throw UnknownCompression{std::string(compression)};
   if (size > largest_chunk) throw Broken{"a chunk says that it is larger than 1 GB"};
   const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(),
