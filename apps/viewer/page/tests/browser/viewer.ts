@@ -162,7 +162,8 @@ export async function coloursAt(page: Page, points: readonly Vec3[]): Promise<Rg
   return page.evaluate(async (points) => {
     const png = atob(window.vicinity.picture().split(",")[1]!);
     const bitmap = await createImageBitmap(new Blob([Uint8Array.from(png, (c) => c.charCodeAt(0))]));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d")!;
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+    const context = canvas.getContext("2d", { willReadFrequently: true })!;
     context.drawImage(bitmap, 0, 0);
     const box = document.getElementById("canvas")!.getBoundingClientRect();
     return points.map((point) => {
