@@ -91,6 +91,7 @@ TEST(World, MuJoCosOwnReaderOfTheUrdfPutsTheLinksWhereWeDo) {
   std::memcpy(files->filedata[0], text.c_str(), text.size() + 1);
   char why[500] = "";
   mjModel* const model = mj_loadXML("arm.urdf", files.get(), why, sizeof why);
+  mj_deleteVFS(files.get());
   ASSERT_NE(model, nullptr) << why;
   mjData* const data = mj_makeData(model);
 
