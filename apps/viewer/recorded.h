@@ -42,10 +42,10 @@ struct Recorded {
   std::optional<cli::JointLog> motion;
 };
 
-/// Reads a CSV (or an MCAP recording, as read_log_text()) with a column `t` or `time`; joint positions are `q_<joint>` or `<joint>`. Of more
-/// than 20,000 rows every second is left out, until there are no more.
-/// Errors: throws Error for a file that cannot be read, without time or with time that does not
-/// rise, with fewer than two rows, or with more than 256 columns.
+/// Reads a CSV (or an MCAP recording, as read_log_text()) with a column `t` or `time`; joint
+/// positions are `q_<joint>` or `<joint>`. Of more than 20,000 rows every second is left out, until
+/// there are no more. Errors: throws Error for a file that cannot be read, without time or with
+/// time that does not rise, with fewer than two rows, or with more than 256 columns.
 Recorded read_recorded(const std::filesystem::path& path, const std::string& name,
                        const RobotModel& robot);
 
