@@ -4,7 +4,9 @@
 // A brick of 8 x 8 x 8 voxels, dilated by at most R voxels, fills a cube of 8 + 2 R. Its rows along
 // x are numbers of 16 bits (R = 4) or 32 bits (R = 8), and the 8 + 2 R rows of a layer lie side by
 // side in vector registers: dilation along x is shifts within the numbers, along y unaligned loads,
-// along z another layer. Only full cubes are ever written, so that no case at an edge is left.
+// along z another layer. Only full cubes are ever written, so that no case at an edge is left. Each
+// step is done for all layers before the next one begins: a vector that is loaded right after parts
+// of it were stored waits for them.
 
 #include "brick_stamp.h"
 
@@ -25,82 +27,132 @@ struct Layers {
   static constexpr int vectors = side / lanes;
   using Vector [[gnu::vector_size(32)]] = Row;
   using Bytes [[gnu::vector_size(lanes)]] = std::uint8_t;
+  // Rows dilated along x by one reach, with zeros before and behind.
+  static constexpr int stride = side + 2 * Reach;
+  // The eight rows of a source layer.
+  using Source [[gnu::vector_size(8 * sizeof(Row))]] = Row;
+  using SourceBytes [[gnu::vector_size(8)]] = std::uint8_t;
 };
+
+// 8 + 2 R rows of eight voxels, from row -R on, as a layer of three bricks along y.
+template <int Reach>
+[[gnu::always_inline]] inline std::array<std::uint64_t, 3> split_rows(
+    const typename Layers<Reach>::Bytes* rows) {
+  if constexpr (Reach <= 4) {
+    std::array<std::uint64_t, 2> half;
+    std::memcpy(half.data(), rows, sizeof(half));
+    return {half[0] << 32, half[0] >> 32 | half[1] << 32, half[1] >> 32};
+  } else {
+    std::array<std::uint64_t, 3> whole;
+    std::memcpy(whole.data(), rows, sizeof(whole));
+    return whole;
+  }
+}
 
 template <int Reach>
 [[gnu::always_inline]] inline void stamp_brick(const BrickBits& source,
                                                const ElementProfiles& element, BrickStamp& stamp) {
   using L = Layers<Reach>;
-  using Row = typename L::Row;
   using Vector = typename L::Vector;
-  constexpr int side = L::side;
+  using Layer = std::array<Vector, L::vectors>;
+  constexpr std::size_t side = L::side;
   const int m = element.radius;
-  const std::size_t profile_count = element.profiles.size();
 
-  // Layers of the cube, from Reach below the brick to Reach above it.
-  std::array<std::array<Vector, L::vectors>, side> cube{};
-  // Rows of one source layer dilated along x by each reach, zeros before and behind.
-  std::array<std::array<Row, side + 2 * Reach>, Reach + 1> dilated{};
+  // Along x: the rows of each source layer dilated by each reach.
+  using Row = typename L::Row;
+  std::array<std::array<Row, L::stride*(Reach + 1)>, 8> dilated;
+  std::size_t first = 8, last = 0;  // layers that hold anything
   for (std::size_t k = 0; k < 8; ++k) {
-    const std::uint64_t word = source.words[k];
-    if (word == 0) continue;
-    for (std::size_t j = 0; j < 8; ++j) {
-      const auto row = static_cast<Row>(((word >> (8 * j)) & 0xff) << Reach);
-      dilated[0][2 * Reach + j] = row;
-      Row longer = row;
-      for (int reach = 1; reach <= m; ++reach) {
-        longer = static_cast<Row>(longer | row << reach | row >> reach);
-        dilated[static_cast<std::size_t>(reach)][2 * Reach + j] = longer;
-      }
-    }
-    std::array<std::array<Vector, L::vectors>, Reach + 1> sums;  // a profile for each |dk|
-    for (std::size_t p = 0; p < profile_count; ++p) {
-      std::array<Vector, L::vectors> sum{};
-      for (int dj = -m; dj <= m; ++dj) {
-        const std::int32_t reach = element.profiles[p][static_cast<std::size_t>(dj + m)];
-        if (reach < 0) continue;
-        const Row* const rows =
-            &dilated[static_cast<std::size_t>(reach)][static_cast<std::size_t>(Reach - dj)];
-        for (std::size_t v = 0; v < sum.size(); ++v) {
-          Vector row;
-          std::memcpy(&row, rows + v * static_cast<std::size_t>(L::lanes), sizeof(row));
-          sum[v] |= row;
-        }
-      }
-      sums[p] = sum;
-    }
-    for (int dk = -m; dk <= m; ++dk) {
-      const auto& sum = sums[element.of_layer[static_cast<std::size_t>(dk + m)]];
-      auto& target = cube[k + static_cast<std::size_t>(Reach + dk)];
-      for (std::size_t v = 0; v < sum.size(); ++v) target[v] |= sum[v];
+    if (source.words[k] == 0) continue;
+    first = std::min(first, k);
+    last = k;
+    typename L::SourceBytes bytes;
+    std::memcpy(&bytes, &source.words[k], sizeof(bytes));
+    const auto rows = __builtin_convertvector(bytes, typename L::Source) << Reach;
+    auto longer = rows;
+    for (std::size_t reach = 0; reach <= static_cast<std::size_t>(m); ++reach) {
+      longer |= rows << static_cast<Row>(reach) | rows >> static_cast<Row>(reach);
+      Row* const target = &dilated[k][L::stride * reach];
+      std::memset(target, 0, L::stride * sizeof(Row));
+      std::memcpy(target + 2 * Reach, &longer, sizeof(longer));
     }
   }
 
-  // Cut the cube into bricks: bytes of eight voxels, in a frame of 24 x 24 rows.
+  // Along y: each source layer by each profile.
+  std::array<std::array<Layer, Reach + 1>, 8> sums;
+  for (std::size_t k = first; k <= last; ++k) {
+    for (std::size_t p = 0; p < element.profiles.size(); ++p) {
+      Layer sum{};
+      if (source.words[k] != 0) {
+        for (const std::uint32_t begin : element.profiles[p]) {
+          const Row* const rows = &dilated[k][begin];
+          for (std::size_t v = 0; v < sum.size(); ++v) {
+            Vector part;
+            std::memcpy(&part, rows + v * static_cast<std::size_t>(L::lanes), sizeof(part));
+            sum[v] |= part;
+          }
+        }
+      }
+      sums[k][p] = sum;
+    }
+  }
+
+  // Along z, from Reach below the brick to Reach above it, and cut into bricks.
   constexpr std::size_t margin = 8 - Reach;
+  using Bytes = typename L::Bytes;
+  std::array<std::array<std::array<Bytes, L::vectors>, 3>, 3> any{};  // [di][dk]
   for (std::size_t layer = 0; layer < side; ++layer) {
-    for (std::size_t v = 0; v < L::vectors; ++v) {
-      const Vector rows = cube[layer][v];
-      const std::array<Vector, 3> cut = {rows << (8 - Reach), rows >> Reach, rows >> (8 + Reach)};
-      for (std::size_t di = 0; di < 3; ++di) {
-        const auto bytes = __builtin_convertvector(cut[di] & Row{0xff}, typename L::Bytes);
-        auto* const frame = reinterpret_cast<std::uint8_t*>(stamp.rows[di][margin + layer].data());
-        std::memcpy(frame + margin + v * static_cast<std::size_t>(L::lanes), &bytes, sizeof(bytes));
+    const int k = static_cast<int>(layer) - Reach;
+    Layer rows{};
+    const int from = std::max(k - m, static_cast<int>(first));
+    const int to = std::min(k + m, static_cast<int>(last));
+    for (int at = from; at <= to; ++at) {
+      const auto& sum = sums[static_cast<std::size_t>(at)]
+                            [element.of_layer[static_cast<std::size_t>(k - at + m)]];
+      for (std::size_t v = 0; v < rows.size(); ++v) rows[v] |= sum[v];
+    }
+    constexpr std::array<int, 3> shifts = {Reach - 8, Reach, Reach + 8};  // to the right
+    for (std::size_t di = 0; di < 3; ++di) {
+      std::array<Bytes, L::vectors> bytes;
+      for (std::size_t v = 0; v < rows.size(); ++v) {
+        const int shift = shifts[di];
+        const Vector cut = shift < 0 ? rows[v] << -shift : rows[v] >> shift;
+        bytes[v] = __builtin_convertvector(cut & Row{0xff}, Bytes);
+        any[di][(margin + layer) / 8][v] |= bytes[v];
+      }
+      const std::array<std::uint64_t, 3> words = split_rows<Reach>(bytes.data());
+      for (std::size_t dj = 0; dj < 3; ++dj) {
+        stamp.columns[di * 3 + dj][margin + layer] = words[dj];
       }
     }
   }
   stamp.reached_bricks = 0;
   for (std::size_t di = 0; di < 3; ++di) {
     for (std::size_t dk = 0; dk < 3; ++dk) {
-      std::array<std::uint64_t, 3> any{};
-      for (std::size_t k = 0; k < 8; ++k) {
-        for (std::size_t dj = 0; dj < 3; ++dj) any[dj] |= stamp.rows[di][dk * 8 + k][dj];
-      }
+      const std::array<std::uint64_t, 3> words = split_rows<Reach>(any[di][dk].data());
       for (std::size_t dj = 0; dj < 3; ++dj) {
-        stamp.reached_bricks |= std::uint32_t{any[dj] != 0} << (dk * 9 + dj * 3 + di);
+        stamp.reached_bricks |= std::uint32_t{words[dj] != 0} << (di * 9 + dj * 3 + dk);
       }
     }
   }
+}
+
+// Reach 4 where that is enough, else 8.
+bool is_near(int radius) noexcept { return radius <= 4; }
+
+template <int Reach>
+std::uint32_t begin_of(const ShapingElement::Row& row) noexcept {
+  return static_cast<std::uint32_t>(Layers<Reach>::stride * row.reach + Reach - row.j);
+}
+
+VICINITY_WIDEST_VECTORS
+void dilate_near(const BrickBits& source, const ElementProfiles& element, BrickStamp& stamp) {
+  stamp_brick<4>(source, element, stamp);
+}
+
+VICINITY_WIDEST_VECTORS
+void dilate_far(const BrickBits& source, const ElementProfiles& element, BrickStamp& stamp) {
+  stamp_brick<8>(source, element, stamp);
 }
 
 }  // namespace
@@ -108,9 +160,8 @@ template <int Reach>
 ElementProfiles::ElementProfiles(const ShapingElement& element) : radius(element.radius()) {
   for (int dk = -radius; dk <= radius; ++dk) {
     Profile profile;
-    profile.fill(-1);
     for (const ShapingElement::Row& row : element.rows()) {
-      if (row.k == dk) profile[static_cast<std::size_t>(row.j + radius)] = row.reach;
+      if (row.k == dk) profile.push_back(is_near(radius) ? begin_of<4>(row) : begin_of<8>(row));
     }
     const auto known = std::find(profiles.begin(), profiles.end(), profile);
     of_layer[static_cast<std::size_t>(dk + radius)] =
@@ -119,14 +170,9 @@ ElementProfiles::ElementProfiles(const ShapingElement& element) : radius(element
   }
 }
 
-VICINITY_WIDEST_VECTORS
-void stamp_near(const BrickBits& source, const ElementProfiles& element, BrickStamp& stamp) {
-  stamp_brick<4>(source, element, stamp);
-}
-
-VICINITY_WIDEST_VECTORS
-void stamp_far(const BrickBits& source, const ElementProfiles& element, BrickStamp& stamp) {
-  stamp_brick<8>(source, element, stamp);
+void dilate(const BrickBits& source, const ElementProfiles& element, BrickStamp& stamp) {
+  is_near(element.radius) ? dilate_near(source, element, stamp)
+                          : dilate_far(source, element, stamp);
 }
 
 }  // namespace vicinity

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "vicinity/layers/layer_bricks.h"
@@ -18,7 +19,10 @@ namespace vicinity {
 struct ElementProfiles {
   explicit ElementProfiles(const ShapingElement& element);
 
-  using Profile = std::array<std::int32_t, 17>;  // [dj + radius] -> reach, -1: no row
+  /// Where what reaches row j + dj begins, among the rows of a layer that were dilated along x: one
+  /// for each dj.
+  using Profile = std::vector<std::uint32_t>;
+
   int radius;
   std::vector<Profile> profiles;
   std::array<std::uint8_t, 17> of_layer{};  // [dk + radius] -> profile
@@ -26,23 +30,26 @@ struct ElementProfiles {
 
 /// A brick dilated: the voxels reached in it and in the 26 bricks around it.
 struct BrickStamp {
-  /// Bit (dk + 1) * 9 + (dj + 1) * 3 + di + 1: whether any voxel of that brick is reached.
-  std::uint32_t reached_bricks = 0;
+  static constexpr unsigned bricks_around = 27;
 
-  BrickBits at(unsigned brick) const noexcept {
-    const unsigned di = brick % 3, dj = brick / 3 % 3, dk = brick / 9;
-    BrickBits bits;
-    for (std::size_t k = 0; k < 8; ++k) bits.words[k] = rows[di][dk * 8 + k][dj];
-    return bits;
+  static constexpr unsigned index_of(int di, int dj, int dk) noexcept {
+    return static_cast<unsigned>((di + 1) * 9 + (dj + 1) * 3 + dk + 1);
   }
 
-  /// [di + 1][(dk + 1) * 8 + layer][dj + 1]: eight rows of eight voxels.
-  alignas(64) std::array<std::array<std::array<std::uint64_t, 3>, 24>, 3> rows{};
+  /// Bit index_of(di, dj, dk): whether any voxel of that brick is reached.
+  std::uint32_t reached_bricks = 0;
+  /// [(di + 1) * 3 + dj + 1][(dk + 1) * 8 + layer]: eight rows of eight voxels.
+  using Column = std::array<std::uint64_t, 24>;
+  alignas(64) std::array<Column, 9> columns{};
+
+  BrickBits at(unsigned brick) const noexcept {
+    BrickBits bits;
+    std::memcpy(bits.words.data(), &columns[brick / 3][brick % 3 * 8], sizeof(bits.words));
+    return bits;
+  }
 };
 
-/// Dilates a brick. A stamp may be used again and again, with elements of radius up to 4 in one,
-/// of any radius in another.
-void stamp_near(const BrickBits& source, const ElementProfiles& element, BrickStamp& stamp);
-void stamp_far(const BrickBits& source, const ElementProfiles& element, BrickStamp& stamp);
+/// Dilates a brick. A stamp may be used again and again, with one element.
+void dilate(const BrickBits& source, const ElementProfiles& element, BrickStamp& stamp);
 
 }  // namespace vicinity

@@ -30,6 +30,38 @@ bool is_full(const BrickBits& bits) noexcept {
   return all == ~std::uint64_t{0};
 }
 
+void join(const BrickBits& bits, BrickBits& with) noexcept {
+  for (std::size_t k = 0; k < 8; ++k) with.words[k] |= bits.words[k];
+}
+
+// Of a brick's 27: those that begin and end within bounds along an axis.
+struct BricksAround {
+  using Along = std::array<std::uint32_t, 3>;  // those a step back, here, a step on
+  Along along_i{}, along_j{}, along_k{};
+
+  BricksAround() noexcept {
+    for (int di = -1; di <= 1; ++di) {
+      for (int dj = -1; dj <= 1; ++dj) {
+        for (int dk = -1; dk <= 1; ++dk) {
+          const std::uint32_t brick = std::uint32_t{1} << BrickStamp::index_of(di, dj, dk);
+          along_i[static_cast<std::size_t>(di + 1)] |= brick;
+          along_j[static_cast<std::size_t>(dj + 1)] |= brick;
+          along_k[static_cast<std::size_t>(dk + 1)] |= brick;
+        }
+      }
+    }
+  }
+
+  static std::uint32_t within(std::int32_t at, std::int32_t lo, std::int32_t hi,
+                              const Along& along) noexcept {
+    std::uint32_t bricks = 0;
+    for (std::int32_t step = -1; step <= 1; ++step) {
+      if (at + step >= lo && at + step < hi) bricks |= along[static_cast<std::size_t>(step + 1)];
+    }
+    return bricks;
+  }
+};
+
 }  // namespace
 
 void LayerBricks::start(const VoxelBox& tile, int m, int q) {
@@ -59,15 +91,17 @@ void LayerBricks::start(const VoxelBox& tile, int m, int q) {
   }
   // Room for every brick that there can be: what is not used is not touched, and nothing is moved.
   cells_.reserve(cell_count);
-  for (auto* bits : {&reached_, &inner_, &newest_}) bits->reserve(cell_count);
+  work_.reserve(cell_count);
+  reached_.reserve(cell_count);
   planes_.reserve(cell_count * plane_count_);
   full_cells_.clear();
   cells_.assign(2, 0);
-  for (auto* bits : {&reached_, &inner_, &newest_}) bits->assign(2, {});
+  work_.assign(2, {});
+  reached_.assign(2, {});
   planes_.assign(2 * plane_count_, {});
   BrickBits all;
   all.words.fill(~std::uint64_t{0});
-  inner_[full_inner] = all;
+  work_[full_inner].taken = all;
   add(full_inner, all, object_code::inner);
 }
 
@@ -76,7 +110,8 @@ std::uint32_t LayerBricks::make(std::uint32_t cell) {
   if (id == 0) {
     id = static_cast<std::uint32_t>(cells_.size());
     cells_.push_back(cell);
-    for (auto* bits : {&reached_, &inner_, &newest_}) bits->emplace_back();
+    work_.emplace_back();
+    reached_.emplace_back();
     planes_.resize(planes_.size() + plane_count_);
   }
   return id;
@@ -85,8 +120,7 @@ std::uint32_t LayerBricks::make(std::uint32_t cell) {
 void LayerBricks::add(std::uint32_t id, const BrickBits& bits, unsigned code) noexcept {
   for (std::size_t plane = 0; plane < plane_count_; ++plane) {
     if ((code >> plane & 1) == 0) continue;
-    auto& words = planes_[id * plane_count_ + plane].words;
-    for (std::size_t k = 0; k < 8; ++k) words[k] |= bits.words[k];
+    join(bits, planes_[id * plane_count_ + plane]);
   }
 }
 
@@ -111,12 +145,11 @@ void LayerBricks::put(const VoxelSet& voxels, unsigned code) {
           continue;
         }
         const std::uint32_t id = make(cell);
-        add(id, bits, code);
         if (code == object_code::inner) {
-          inner_[id] = bits;
+          join(bits, work_[id].taken);
+          add(id, bits, code);
         } else {
-          reached_[id] = bits;
-          newest_[id] = bits;
+          work_[id].newest = bits;
           changed_.push_back(id);
         }
       }
@@ -130,6 +163,16 @@ void LayerBricks::put_boundary(const VoxelSet& voxels) {
 }
 
 void LayerBricks::put_inner(const VoxelSet& voxels) { put(voxels, object_code::inner); }
+
+// Gives the newest voxels their code.
+void LayerBricks::settle(unsigned code) noexcept {
+  for (const std::uint32_t id : changed_) {
+    auto& [taken, newest] = work_[id];
+    join(newest, taken);
+    join(newest, reached_[id]);
+    add(id, newest, code);
+  }
+}
 
 // Those of the newest voxels that have a 6-neighbour outside what is reached.
 void LayerBricks::find_frontier() {
@@ -159,69 +202,60 @@ void LayerBricks::find_frontier() {
       const std::uint64_t along_y =
           ((w << 8) | (before_y[k] >> 56)) & ((w >> 8) | (after_y[k] << 56));
       const std::uint64_t along_z = (k > 0 ? here[k - 1] : below) & (k < 7 ? here[k + 1] : above);
-      found.bits.words[k] = newest_[id].words[k] & ~(along_x & along_y & along_z);
+      found.bits.words[k] = work_[id].newest.words[k] & ~(along_x & along_y & along_z);
     }
-    newest_[id] = {};
+    work_[id].newest = {};
     if (found.bits.any()) frontier_.push_back(found);
   }
   changed_.clear();
 }
 
-// Gives a code to what the element reaches from the frontier and nobody has taken, within the tile
-// and `margin` voxels around it.
-template <int Reach>
-void LayerBricks::spread(const ElementProfiles& element, unsigned code, std::int32_t margin) {
+// Finds what the element reaches from the frontier and nobody has taken, within the tile and
+// `margin` voxels around it.
+void LayerBricks::spread(const ElementProfiles& element, std::int32_t margin) {
   const std::int32_t rim = (margin + 7) / 8;
   const BlockIndex lo = {tile_lo_.i - rim, tile_lo_.j - rim, tile_lo_.k - rim};
   const BlockIndex hi = {tile_hi_.i + rim, tile_hi_.j + rim, tile_hi_.k + rim};
+  std::array<std::int32_t, BrickStamp::bricks_around> step{};  // from a cell to those around it
+  BricksAround around;
+  for (int di = -1; di <= 1; ++di) {
+    for (int dj = -1; dj <= 1; ++dj) {
+      for (int dk = -1; dk <= 1; ++dk) {
+        step[BrickStamp::index_of(di, dj, dk)] = (dk * size_.j + dj) * size_.i + di;
+      }
+    }
+  }
   BrickStamp stamp;
   for (const Frontier& source : frontier_) {
-    if constexpr (Reach <= 4) {
-      stamp_near(source.bits, element, stamp);
-    } else {
-      stamp_far(source.bits, element, stamp);
-    }
+    dilate(source.bits, element, stamp);
     const BlockIndex at = place_of(source.cell);
-    for (std::uint32_t bricks = stamp.reached_bricks; bricks != 0; bricks &= bricks - 1) {
+    std::uint32_t bricks = stamp.reached_bricks & around.within(at.i, lo.i, hi.i, around.along_i) &
+                           around.within(at.j, lo.j, hi.j, around.along_j) &
+                           around.within(at.k, lo.k, hi.k, around.along_k);
+    for (; bricks != 0; bricks &= bricks - 1) {
       const auto brick = static_cast<unsigned>(std::countr_zero(bricks));
-      const std::int32_t di = static_cast<std::int32_t>(brick % 3) - 1;
-      const std::int32_t dj = static_cast<std::int32_t>(brick / 3 % 3) - 1;
-      const std::int32_t dk = static_cast<std::int32_t>(brick / 9) - 1;
-      if (at.i + di < lo.i || at.i + di >= hi.i || at.j + dj < lo.j || at.j + dj >= hi.j ||
-          at.k + dk < lo.k || at.k + dk >= hi.k) {
-        continue;
-      }
-      const auto cell = static_cast<std::uint32_t>(static_cast<std::int32_t>(source.cell) +
-                                                   (dk * size_.j + dj) * size_.i + di);
+      const auto cell =
+          static_cast<std::uint32_t>(static_cast<std::int32_t>(source.cell) + step[brick]);
       const std::uint32_t known = directory_[cell];
       BrickBits free = stamp.at(brick);
-      for (std::size_t k = 0; k < 8; ++k) {
-        free.words[k] &= ~(reached_[known].words[k] | inner_[known].words[k]);
-      }
+      for (std::size_t k = 0; k < 8; ++k) free.words[k] &= ~work_[known].taken.words[k];
       if (!free.any()) continue;
       const std::uint32_t id = known != 0 ? known : make(cell);
-      if (!newest_[id].any()) changed_.push_back(id);
-      for (std::size_t k = 0; k < 8; ++k) {
-        newest_[id].words[k] |= free.words[k];
-        reached_[id].words[k] |= free.words[k];
-      }
-      add(id, free, code);
+      BrickBits& newest = work_[id].newest;
+      if (!newest.any()) changed_.push_back(id);
+      join(free, newest);
     }
   }
 }
 
 void LayerBricks::rank(const ShapingElement& element) {
   const ElementProfiles profiles(element);
+  settle(object_code::boundary);
   for (int n = 1; n <= q_; ++n) {
     find_frontier();
-    const std::int32_t margin = (q_ - n) * m_;
-    if (m_ <= 4) {
-      spread<4>(profiles, object_code::of_rank(n), margin);
-    } else {
-      spread<8>(profiles, object_code::of_rank(n), margin);
-    }
+    spread(profiles, (q_ - n) * m_);
+    settle(object_code::of_rank(n));
   }
-  for (const std::uint32_t id : changed_) newest_[id] = {};
   changed_.clear();
 }
 

@@ -17,19 +17,29 @@ namespace vicinity {
 namespace {
 
 // A tile is large beside its halo, and its bricks are small beside the caches.
-constexpr std::int32_t tile_side = 256;
+constexpr std::int32_t usual_side = 256;
+
+/// Where tiles end along an axis: as many as fit, all of nearly the same length.
+std::vector<std::int32_t> ends(std::int32_t lo, std::int32_t hi) {
+  const std::int32_t length = hi - lo;
+  const std::int32_t count = std::max((length + usual_side / 2) / usual_side, 1);
+  std::vector<std::int32_t> ends{lo & ~7};
+  for (std::int32_t n = 1; n <= count; ++n) {
+    const auto end = static_cast<std::int32_t>(lo + std::int64_t{length} * n / count);
+    ends.push_back((end + 7) & ~7);
+  }
+  return ends;
+}
 
 /// The tiles that cover a box.
 std::vector<VoxelBox> tiles_of(const VoxelBox& box) {
-  const auto down = [](std::int32_t x) { return x & ~7; };
+  const std::vector<std::int32_t> i = ends(box.lo.i, box.hi.i), j = ends(box.lo.j, box.hi.j),
+                                  k = ends(box.lo.k, box.hi.k);
   std::vector<VoxelBox> tiles;
-  for (std::int32_t k = down(box.lo.k); k < box.hi.k; k += tile_side) {
-    for (std::int32_t j = down(box.lo.j); j < box.hi.j; j += tile_side) {
-      for (std::int32_t i = down(box.lo.i); i < box.hi.i; i += tile_side) {
-        const auto end = [](std::int32_t begin, std::int32_t hi) {
-          return std::min(begin + tile_side, (hi + 7) & ~7);
-        };
-        tiles.push_back({{i, j, k}, {end(i, box.hi.i), end(j, box.hi.j), end(k, box.hi.k)}});
+  for (std::size_t c = 1; c < k.size(); ++c) {
+    for (std::size_t b = 1; b < j.size(); ++b) {
+      for (std::size_t a = 1; a < i.size(); ++a) {
+        tiles.push_back({{i[a - 1], j[b - 1], k[c - 1]}, {i[a], j[b], k[c]}});
       }
     }
   }

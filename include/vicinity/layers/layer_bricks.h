@@ -84,6 +84,10 @@ class LayerBricks {
   // Brick 0 is nothing; brick 1 stands for every brick that is inner throughout.
   static constexpr std::uint32_t full_inner = 1;
 
+  struct Work {
+    BrickBits taken;   // inner, boundary, and every rank that has been given
+    BrickBits newest;  // of the one that is being given
+  };
   struct Frontier {
     std::uint32_t cell;
     BrickBits bits;
@@ -104,8 +108,8 @@ class LayerBricks {
   void put(const VoxelSet& voxels, unsigned code);
   void add(std::uint32_t id, const BrickBits& bits, unsigned code) noexcept;
   void find_frontier();
-  template <int Reach>
-  void spread(const ElementProfiles& element, unsigned code, std::int32_t margin);
+  void spread(const ElementProfiles& element, std::int32_t margin);
+  void settle(unsigned code) noexcept;
 
   int m_ = 0, q_ = 0;
   VoxelBox box_;
@@ -115,11 +119,10 @@ class LayerBricks {
   HugeVector<std::uint32_t> directory_;  // cell -> brick
   HugeVector<std::uint32_t> cells_;      // brick -> cell
   HugeVector<std::uint32_t> full_cells_;
-  HugeVector<BrickBits> reached_;  // boundary and every rank so far
-  HugeVector<BrickBits> inner_;
-  HugeVector<BrickBits> newest_;       // of the rank that is being given
+  HugeVector<Work> work_;
+  HugeVector<BrickBits> reached_;      // boundary and every rank that has been given
   HugeVector<BrickBits> planes_;       // plane_count_ for each brick
-  HugeVector<std::uint32_t> changed_;  // bricks with anything in newest_
+  HugeVector<std::uint32_t> changed_;  // bricks with anything newest
   HugeVector<Frontier> frontier_;
 };
 
