@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <sys/mman.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <cstring>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <set>
 #include <span>
@@ -116,15 +116,14 @@ void measure_ranks(Report& report, const GroupOptions&) {
     const ShapingElement sphere(LayerShape::sphere, layers_m);
     const ShapingElement full(LayerShape::cube, layers_m);
     const std::size_t bricks = touched_bricks(ranked_neighbours(boundary, inner, sphere, layers_q));
-    // As a build does it: by tiles, into bricks of a few bits a voxel, which are kept.
+    // As a build does it: by tiles, into bricks of a few bits a voxel, which each thread keeps.
     const auto ranks = [&](const ShapingElement& element) {
       return [&] {
-        std::mutex mutex;
-        HugeVector<BrickBits> kept;
+        tbb::enumerable_thread_specific<HugeVector<BrickBits>> kept;
         rank_tiles(boundary, inner, element, layers_q, [&](const LayerBricks& tile) {
-          const std::lock_guard lock(mutex);
+          HugeVector<BrickBits>& mine = kept.local();
           tile.for_each_brick([&](const BlockIndex&, std::span<const BrickBits> planes) {
-            kept.insert(kept.end(), planes.begin(), planes.end());
+            mine.insert(mine.end(), planes.begin(), planes.end());
           });
         });
       };
