@@ -45,7 +45,7 @@ async function halves(): Promise<{ alike: boolean; left: number; right: number }
     const png = atob(window.vicinity.picture().split(",")[1]!);
     const bitmap = await createImageBitmap(new Blob([Uint8Array.from(png, (c) => c.charCodeAt(0))]));
     const [width, height] = [bitmap.width / 2, bitmap.height];
-    const context = new OffscreenCanvas(bitmap.width, height).getContext("2d")!;
+    const context = new OffscreenCanvas(bitmap.width, height).getContext("2d", { willReadFrequently: true })!;
     context.drawImage(bitmap, 0, 0);
     const short = (x: number): number => {
       const { data } = context.getImageData(x, 0, width, height);

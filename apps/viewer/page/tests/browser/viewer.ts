@@ -198,8 +198,15 @@ export function query(field: string, points: readonly Vec3[]): Queried[] {
 export async function dropFile(page: Page, file: string): Promise<void> {
   const browser = await page.context().newCDPSession(page);
   const data = { items: [], files: [file], dragOperationsMask: 1 };
-  for (const type of ["dragEnter", "dragOver", "drop"] as const) {
-    await browser.send("Input.dispatchDragEvent", { type, x: 500, y: 200, data });
-  }
+  const drag = (type: "dragEnter" | "dragOver" | "drop"): Promise<unknown> =>
+    browser.send("Input.dispatchDragEvent", { type, x: 500, y: 200, data });
+  await drag("dragEnter");
+  // A person lets go when the page shows that it would take the file. A browser drops nothing on a
+  // page that has not said so yet.
+  await drag("dragOver");
+  await page.locator("body.dropping").waitFor();
+  await drag("dragOver");
+  await drag("drop");
+  await page.locator("body:not(.dropping)").waitFor();
   await browser.detach();
 }
