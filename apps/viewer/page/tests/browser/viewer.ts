@@ -38,9 +38,12 @@ for (const needed of [program, browserPath]) {
   if (!existsSync(needed)) throw new Error(`${needed} is not there: set VICINITY and CHROMIUM`);
 }
 
+const scratch: string[] = [];
+process.on("exit", () => scratch.forEach((folder) => rmSync(folder, { recursive: true, force: true })));
+
 export function scratchFolder(): string {
   const folder = mkdtempSync(join(tmpdir(), "vicinity-page-"));
-  process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
+  scratch.push(folder);
   return folder;
 }
 
