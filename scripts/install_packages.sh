@@ -27,7 +27,7 @@ packages=(
 #   --benchmarks     the benchmarks
 #   --peers          the benchmarks, and what scripts/bench.sh measures us beside (150 MB)
 #   --python         what VICINITY_PYTHON and its tests need, and the tests of Debian packages
-#   --readers        the programs that our exports are for, which open them in tests (250 MB)
+#   --readers        the programs that our exports are for, which open them in tests (250 MB or more)
 #   --viewer         the viewer's page, which npm builds; without it vicinity serve has no page
 #   --viewer-tests   a browser (700 MB) for the tests that look at the page, and for serve --shot
 # Node, npm and a browser that came from elsewhere will do.
