@@ -18,12 +18,13 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libvicinity0)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "Vicinity: the tick for C, as a shared library")
 
+# Debian's libassimp-dev names zlib to CMake, and not to apt.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvicinity-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libvicinity0 (= ${PROJECT_VERSION}), libeigen3-dev, libfmt-dev, libtbb-dev, libassimp-dev, libyaml-cpp-dev, nlohmann-json3-dev, libpugixml-dev")
+    "libvicinity0 (= ${PROJECT_VERSION}), libeigen3-dev, libfmt-dev, libtbb-dev, libassimp-dev, zlib1g-dev, libyaml-cpp-dev, nlohmann-json3-dev, libpugixml-dev")
 if(VICINITY_MUJOCO)  # for vicinity::mujoco alone
-  set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libmujoco-dev, libqhull-dev")
+  set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libmujoco-dev, libqhull-dev, libgl-dev, libopengl-dev")
 endif()
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Vicinity: headers and libraries for C++ and C")
 

@@ -18,7 +18,8 @@ packages=(
   libzstd-dev                        # recordings in MCAP
   libcairo2-dev fonts-dejavu-core    # pictures
   libembree-dev                      # the report's measured peer: nearest surface by a tree
-  libmujoco-dev libqhull-dev         # vicinity simulate; the first is not found without the second
+  # vicinity simulate, and drag in MuJoCo: the first is not found without the others
+  libmujoco-dev libqhull-dev libgl-dev libopengl-dev
   libopenvdb-dev libboost-iostreams-dev # export to .vdb
   libgtest-dev libgmock-dev          # tests
   liburdfdom-dev liborocos-kdl-dev   # tests: robots and kinematics by another route

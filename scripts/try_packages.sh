@@ -18,10 +18,13 @@ build=$(realpath "${2:-$repository/build/release}")
 try=$root/try
 rm -rf "$try"
 mkdir -p "$try"
-cpack -G DEB --config "$build/CPackConfig.cmake" -B "$try/made" >/dev/null
+cpack -G DEB --config "$build/CPackConfig.cmake" -B "$try/made" >"$try/cpack.log" 2>&1 || { cat "$try/cpack.log" >&2; exit 1; }
 mv "$try"/made/*.deb "$try"
+mkdir -p "$try/repository/bindings"  # setuptools writes beside what it builds
+cp -r "$repository/bindings/python" "$try/repository/bindings"
+cp "$repository/CMakeLists.txt" "$try/repository"
 VICINITY_BUILD=$build /usr/bin/python3 -m pip wheel --no-index --no-build-isolation --no-deps -q \
-  -w "$try" "$repository/bindings/python"
+  -w "$try" "$try/repository/bindings/python"
 cp -r "$repository/examples" "$repository/tests/package/c_example.c" "$try"
 (cd "$try" && du -h --apparent-size -- *.deb *.whl)
 
@@ -32,28 +35,26 @@ install() { inside "apt-get install -y -qq --no-install-recommends $* >/dev/null
   inside "apt-get install -y --no-install-recommends $*" >&2
   exit 1
 }; }
-installed() { inside "dpkg-query --show --showformat='\${Package}\n'"; }
-before=
-begin() {
-  echo "== $*"
-  before=$(installed)
-}
-end() {  # purges all that came since
-  local came
-  came=$(comm -13 <(sort <<<"$before") <(installed | sort))
+installed() { inside "dpkg-query --show --showformat='\${Package}\n' | sort"; }
+begin() { echo "== $*"; }
+end() {  # purges all that came since the system was clean
+  local came left
+  came=$(comm -13 "$root/clean_packages" <(installed))
+  [[ -z $came ]] && return
   echo "   $(wc -w <<<"$came") packages came and go again"
   inside "apt-get purge -y -qq $(tr '\n' ' ' <<<"$came") >/dev/null 2>&1"
-  local left
   left=$(inside "find / -xdev \( -path /proc -o -path /try -o -path /sys \) -prune -o -iname '*vicinity*' -print")
   [[ -z $left ]] || { echo "try_packages.sh: left behind: $left" >&2; exit 1; }
 }
+[[ -f $root/clean_packages ]] || installed >"$root/clean_packages"
+end >/dev/null  # of a run that failed
 inside "apt-get update -qq"
 
 begin "vicinity: the command, its manual and its completions"
 install /try/vicinity_*.deb
 inside "cd /try && vicinity demo -o demo >/dev/null 2>&1 && ls demo/index.html"
 inside "cd /try && vicinity build examples/02_arm_tick/cell.yaml -o cell.vicinity >/dev/null 2>&1 &&
-        vicinity query cell.vicinity 0.3 0 0.5"
+        vicinity info cell.vicinity | head -n 3"
 inside "cd /try && vicinity export cell.vicinity -o cell.vdb && vicinity simulate --help >/dev/null"
 inside "ls /usr/share/man/man1/vicinity.1* /usr/share/bash-completion/completions/vicinity"
 end
@@ -66,7 +67,7 @@ inside "cd /try && cc c_example.c -o c_example \$(pkg-config --cflags --libs vic
 inside "cd /try && cmake -S examples/01_first_touch -B first >/dev/null && make -s -C first >/dev/null &&
         first/first_touch | tail -n 1"
 if [[ -f $root/usr/include/vicinity/mujoco/drag.h ]]; then
-  install libmujoco-dev libqhull-dev
+  install libmujoco-dev libqhull-dev libgl-dev libopengl-dev
   inside "cd /try && cmake -S examples/03_mujoco -B third >/dev/null && make -s -C third >/dev/null &&
           third/swing examples/03_mujoco/arm.xml"
 fi

@@ -11,8 +11,8 @@ namespace vicinity {
 [[noreturn]] inline void refuse_to_simulate() {
   throw Error({.where = "simulate",
                .what = "this was built without the simulation",
-               .hint = "building it with -DVICINITY_SIMULATION=ON, which needs libmujoco-dev and "
-                       "libqhull-dev"});
+               .hint = "building it with -DVICINITY_SIMULATION=ON, which needs libmujoco-dev, "
+                       "libqhull-dev, libgl-dev and libopengl-dev"});
 }
 
 }  // namespace vicinity
