@@ -18,10 +18,14 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libvicinity0)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "Vicinity: the tick for C, as a shared library")
 
+# Debian's libassimp-dev names zlib to CMake, and not to apt.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvicinity-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libvicinity0 (= ${PROJECT_VERSION}), libeigen3-dev, libfmt-dev, libtbb-dev, libassimp-dev, libyaml-cpp-dev, nlohmann-json3-dev, libpugixml-dev")
+    "libvicinity0 (= ${PROJECT_VERSION}), libeigen3-dev, libfmt-dev, libtbb-dev, libassimp-dev, zlib1g-dev, libyaml-cpp-dev, nlohmann-json3-dev, libpugixml-dev")
+if(VICINITY_MUJOCO)  # for vicinity::mujoco alone
+  set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libmujoco-dev, libqhull-dev, libgl-dev, libopengl-dev")
+endif()
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Vicinity: headers and libraries for C++ and C")
 
 if(VICINITY_CLI)
@@ -29,6 +33,9 @@ if(VICINITY_CLI)
   set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME vicinity)
   set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
   set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS fonts-dejavu-core)
+  if(VICINITY_BRIDGE)  # it is one of the command's: vicinity bridge
+    set(CPACK_DEBIAN_TOOLS_PACKAGE_PROVIDES vicinity-bridge)
+  endif()
   set(CPACK_COMPONENT_TOOLS_DESCRIPTION "${PROJECT_DESCRIPTION}: the vicinity command")
 endif()
 if(VICINITY_PYTHON)

@@ -18,7 +18,8 @@ packages=(
   libzstd-dev                        # recordings in MCAP
   libcairo2-dev fonts-dejavu-core    # pictures
   libembree-dev                      # the report's measured peer: nearest surface by a tree
-  libmujoco-dev libqhull-dev         # vicinity simulate; the first is not found without the second
+  # vicinity simulate, and drag in MuJoCo: the first is not found without the others
+  libmujoco-dev libqhull-dev libgl-dev libopengl-dev
   libopenvdb-dev libboost-iostreams-dev # export to .vdb
   libgtest-dev libgmock-dev          # tests
   liburdfdom-dev liborocos-kdl-dev   # tests: robots and kinematics by another route
@@ -27,6 +28,7 @@ packages=(
 #   --benchmarks     the benchmarks
 #   --peers          the benchmarks, and what scripts/bench.sh measures us beside (150 MB)
 #   --python         what VICINITY_PYTHON and its tests need, and the tests of Debian packages
+#   --readers        the programs that our exports are for, which open them in tests (250 MB or more)
 #   --viewer         the viewer's page, which npm builds; without it vicinity serve has no page
 #   --viewer-tests   a browser (700 MB) for the tests that look at the page, and for serve --shot
 # Node, npm and a browser that came from elsewhere will do.
@@ -37,9 +39,10 @@ for flag in "$@"; do
                         libdynamicedt3d-dev python3-scipy) ;;
     --python) packages+=(pybind11-dev python3-dev python3-numpy python3-pip python3-venv python3-setuptools
                          python3-wheel mypy dpkg-dev file) ;;
+    --readers) packages+=(python3-numpy python3-openvdb python3-vtk9) ;;
     --viewer) command -v npm >/dev/null || packages+=(nodejs npm) ;;
     --viewer-tests) command -v chromium >/dev/null || packages+=(chromium) ;;
-    *) echo "install_packages.sh: there is no $flag; --benchmarks, --peers, --python, --viewer, --viewer-tests" >&2; exit 2 ;;
+    *) echo "install_packages.sh: there is no $flag; --benchmarks, --peers, --python, --readers, --viewer, --viewer-tests" >&2; exit 2 ;;
   esac
 done
 

@@ -9,7 +9,7 @@ set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 jobs=$(nproc)
 
-"$repository/scripts/install_packages.sh" --python --viewer
+"$repository/scripts/install_packages.sh" --python --readers --viewer
 cd "$repository"
 
 for preset in release asan_ubsan; do

@@ -163,6 +163,22 @@ std::vector<Tuning> tune(Runner& runner, const std::vector<Task>& tasks,
 
 }  // namespace
 
+const char* to_string(Part part) noexcept {
+  switch (part) {
+    case Part::tasks:
+      return "tasks";
+    case Part::delay:
+      return "delay";
+    case Part::beside:
+      return "beside";
+    case Part::strict:
+      return "strict";
+    case Part::devices:
+      return "devices";
+  }
+  return "";
+}
+
 void check(const StudyOptions& options) {
   const auto refuse = [](const char* what, const std::string& found, const char* expected) {
     throw Error({.where = "study", .what = what, .found = found, .expected = expected});

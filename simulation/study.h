@@ -37,6 +37,9 @@ enum class Part : std::uint8_t {
   devices,  ///< drag on devices that bear less
 };
 
+/// "tasks", "delay", ...
+const char* to_string(Part part) noexcept;
+
 /// What 200 trials say.
 struct Summary {
   int trials = 0;

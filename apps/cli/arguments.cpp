@@ -52,6 +52,21 @@ Box box_from(std::string_view option, const std::string& text) {
   return {a.cwiseMin(b), a.cwiseMax(b)};
 }
 
+std::vector<std::string> words_from(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+Pose pose_from(std::string_view option, const std::string& text) {
+  const auto n = numbers_from(option, text, 6);
+  return pose_from_rpy({n[0], n[1], n[2]}, {n[3], n[4], n[5]});
+}
+
 LengthUnit unit_from(std::string_view option, const std::string& text) {
   if (const auto unit = length_unit(text)) return *unit;
   throw Error({.where = std::string(option),

@@ -28,6 +28,12 @@ Vec3 point_from(std::string_view option, const std::string& text);
 /// "x,y,z,x,y,z", two opposite corners [m] -> box. Errors: as numbers_from(), and for a flat box.
 Box box_from(std::string_view option, const std::string& text);
 
+/// "a,b,c" -> words; none for an empty text.
+std::vector<std::string> words_from(const std::string& text);
+
+/// "x,y,z,roll,pitch,yaw" [m, rad] -> pose. Errors: as numbers_from().
+Pose pose_from(std::string_view option, const std::string& text);
+
 /// "mm", "cm", "m" or "in" -> unit. Errors: throws Error for another word.
 LengthUnit unit_from(std::string_view option, const std::string& text);
 

@@ -328,7 +328,7 @@ void add_simulate(CLI::App& parent, Run& run) {
       "vicinity simulate --demo -o study\n"
       "  vicinity simulate cell.yaml --trials 20 --method none,closing,rising -o study");
   auto& [app, options] = command;
-  app.add_option("SCENE", options->arm.scene, "scene with a 'robot' block, or with --robot");
+  app.add_option("SCENE", options->scene, "scene with a 'robot' block, or with --robot");
   app.add_flag("--demo", options->demo, "the demo's hot cell, its arm and six tasks");
   app.add_option("-o,--output", options->folder, "folder to leave everything in")->required();
   app.add_option("--trials", options->trials, "operators in each cell")->capture_default_str();
@@ -345,12 +345,12 @@ void add_simulate(CLI::App& parent, Run& run) {
       ->capture_default_str();
   app.add_option("--threads", options->threads, "0: as many as the machine has")
       ->check(CLI::Range(0, 1024));
-  app.add_option("--robot", options->arm.robot, "URDF file of the arm, with inertia");
-  app.add_option("--base", options->arm.base, "where it stands: x,y,z,roll,pitch,yaw [m, rad]");
-  app.add_option("--packages", options->arm.packages,
+  app.add_option("--robot", options->robot, "URDF file of the arm, with inertia");
+  app.add_option("--base", options->base, "where it stands: x,y,z,roll,pitch,yaw [m, rad]");
+  app.add_option("--packages", options->packages,
                  "folders for the package:// addresses of its meshes");
-  app.add_option("--exclude", options->arm.exclude, "links that feel nothing: base_link,...");
-  app.add_option("--tool", options->arm.tool, "link that the hand leads; default: the last one");
+  app.add_option("--exclude", options->exclude, "links that feel nothing: base_link,...");
+  app.add_option("--tool", options->tool, "link that the hand leads; default: the last one");
   app.add_option("--meshes", options->meshes,
                  "folder that relative mesh paths start at; default: that of the scene file");
   app.add_flag("--json", options->json, "for programs");

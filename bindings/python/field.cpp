@@ -10,6 +10,8 @@
 
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -19,6 +21,7 @@
 #include "casters.h"
 #include "docstrings.h"
 #include "parts.h"
+#include "vdb/vdb_file.h"
 #include "vicinity/drag/trace.h"
 #include "vicinity/viscosity/field_file.h"
 #include "vicinity/viscosity/npy_file.h"
@@ -140,20 +143,45 @@ py::array voxels(const ViscosityField& field, VoxelQuantity what, const std::opt
   return array;
 }
 
-void export_field(const ViscosityField& field, const std::filesystem::path& path,
-                  VoxelQuantity what, const std::optional<Box>& box, const py::object& progress) {
-  const VoxelBox asked = voxels_asked(field, box);
-  const auto write = path.extension() == ".npy"   ? write_npy
-                     : path.extension() == ".vti" ? write_vti
-                                                  : nullptr;
-  if (write == nullptr) {
-    throw Error({.where = path.string(),
-                 .what = "is of no kind that can be written here",
-                 .expected = ".npy or .vti",
-                 .hint = "vicinity export, which may know more"});
+// The file that a path asks for by its extension, as one function of what is to be written.
+using Write = std::function<void(const VoxelBox&, const std::function<void(double)>&)>;
+Write writer_of(const ViscosityField& field, const std::filesystem::path& path,
+                const std::optional<VoxelQuantity>& what) {
+  const VoxelQuantity one = what.value_or(VoxelQuantity::rank);
+  if (path.extension() == ".npy") {
+    return [&field, path, one](const VoxelBox& box, const auto& progress) {
+      write_npy(field, box, one, path, progress);
+    };
   }
+  if (path.extension() == ".vti") {
+    return [&field, path, one](const VoxelBox& box, const auto& progress) {
+      write_vti(field, box, one, path, progress);
+    };
+  }
+  if (path.extension() == ".vdb") {
+#ifdef VICINITY_OPENVDB
+    const auto several = what ? std::vector{*what} : usual_vdb_quantities;
+    return [&field, path, several](const VoxelBox& box, const auto& progress) {
+      write_vdb(field, box, several, path, progress);
+    };
+#else
+    throw Error({.where = path.string(),
+                 .what = "this module was built without OpenVDB",
+                 .hint = ".npy or .vti"});
+#endif
+  }
+  throw Error({.where = path.string(),
+               .what = "is of no kind that can be written",
+               .expected = ".npy, .vti or .vdb"});
+}
+
+void export_field(const ViscosityField& field, const std::filesystem::path& path,
+                  const std::optional<VoxelQuantity>& what, const std::optional<Box>& box,
+                  const py::object& progress) {
+  const VoxelBox asked = voxels_asked(field, box);
+  const Write write = writer_of(field, path, what);
   beside_interpreter(progress, [&](const Report& report) {
-    write(field, asked, what, path, [&](double done) { report("export", done); });
+    write(asked, [&](double done) { report("export", done); });
     return true;
   });
 }
@@ -314,11 +342,12 @@ void add_field(py::module_& module) {
   module.def("open_field", &open_field, "path"_a, Unlocked(), doc::open_field);
   const std::string export_says =
       std::string("By the path's extension, .npy:\n") + doc::write_npy +
-      "\n\n.vti: an image for ParaView, the same values as cell data.\n\n"
+      "\n\n.vti, an image for ParaView, the same values as cell data; .vdb:\n" + doc::write_vdb +
+      "\n\nwhat: None: rank, and in a .vdb viscosity too.\n"
       "progress: called as progress(\"export\", done), done 0..1; what it raises stops the "
       "export,\n"
       "as Ctrl-C does, and leaves nothing half done.";
-  module.def("export_field", &export_field, "field"_a, "path"_a, "what"_a = VoxelQuantity::rank,
+  module.def("export_field", &export_field, "field"_a, "path"_a, "what"_a = py::none(),
              "box"_a = py::none(), "progress"_a = py::none(), export_says.c_str());
   add_traces(module);
 }

@@ -62,6 +62,8 @@ void add_primitives(py::module_& module) {
   primitives.def("box", &primitive::box, "size"_a, doc::box);
   primitives.def("sphere", &primitive::sphere, "radius"_a, "segments"_a = segments);
   primitives.def("cylinder", &primitive::cylinder, "radius"_a, "height"_a, "segments"_a = segments);
+  primitives.def("capsule", &primitive::capsule, "radius"_a, "height"_a, "segments"_a = segments,
+                 doc::capsule);
   primitives.def("cone", &primitive::cone, "base_radius"_a, "height"_a, "segments"_a = segments,
                  doc::cone);
   primitives.def("torus", &primitive::torus, "radius"_a, "tube_radius"_a, "segments"_a = segments,

@@ -21,5 +21,6 @@ PYBIND11_MODULE(_vicinity, module) {
   vicinity::python::add_field(module);
   vicinity::python::add_scene(module);
   vicinity::python::add_arm(module);
+  vicinity::python::add_study(module);
   module.attr("__name__") = "vicinity._vicinity";
 }

@@ -6,6 +6,10 @@
 
 #include <pybind11/pybind11.h>
 
+#include <optional>
+
+#include "vicinity/viscosity/scene.h"
+
 namespace vicinity::python {
 
 void add_error(pybind11::module_& module);
@@ -13,6 +17,10 @@ void add_mesh(pybind11::module_& module);
 void add_field(pybind11::module_& module);
 void add_scene(pybind11::module_& module);
 void add_arm(pybind11::module_& module);
+void add_study(pybind11::module_& module);
+
+/// A copy of Python's Scene; nothing where it is none.
+std::optional<Scene> scene_from(pybind11::handle scene);
 
 }  // namespace vicinity::python
 

@@ -168,6 +168,11 @@ void add_scenes(py::module_& module) {
 
 }  // namespace
 
+std::optional<Scene> scene_from(py::handle scene) {
+  if (!py::isinstance<SceneInPython>(scene)) return std::nullopt;
+  return scene.cast<const SceneInPython&>().scene();
+}
+
 void add_scene(py::module_& module) {
   add_objects(module);
   add_scenes(module);

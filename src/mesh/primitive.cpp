@@ -116,6 +116,22 @@ TriangleMesh cylinder(double radius, double height, int segments) {
   return revolution({{0, -z}, {radius, -z}, {radius, z}, {0, z}}, segments);
 }
 
+TriangleMesh capsule(double radius, double height, int segments) {
+  require_length("capsule", "radius", radius);
+  require_length("capsule", "height", height);
+  const auto arcs = std::max<std::size_t>(2, require_segments("capsule", segments) / 4);
+  std::vector<PlanePoint> profile;
+  for (const double side : {-1., 1.}) {
+    for (std::size_t step = 0; step <= arcs; ++step) {
+      const std::size_t from_pole = side < 0 ? step : arcs - step;
+      const double angle = pi / 2 * static_cast<double>(from_pole) / static_cast<double>(arcs);
+      profile.push_back({from_pole == 0 ? 0 : radius * std::sin(angle),
+                         side * (height / 2 + radius * std::cos(angle))});
+    }
+  }
+  return revolution(profile, segments);
+}
+
 TriangleMesh cone(double base_radius, double height, int segments) {
   require_length("cone", "base radius", base_radius);
   require_length("cone", "height", height);

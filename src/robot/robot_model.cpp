@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vicinity/geometry/error.h"
+#include "vicinity/geometry/nearest_word.h"
 
 namespace vicinity {
 namespace {
@@ -29,6 +30,17 @@ std::optional<int> RobotModel::find_link(std::string_view wanted) const noexcept
 
 std::optional<int> RobotModel::find_joint(std::string_view wanted) const noexcept {
   return find(joints, wanted);
+}
+
+int link_named(const RobotModel& robot, const std::string& name, const std::string& where) {
+  if (const auto link = robot.find_link(name)) return *link;
+  std::vector<std::string> links;
+  for (const Link& link : robot.links) links.push_back(link.name);
+  throw Error({.where = where,
+               .what = "the robot has no such link",
+               .found = "'" + name + "'",
+               .expected = "a link of '" + robot.name + "'",
+               .hint = nearest_word(name, links)});
 }
 
 void check(const RobotModel& robot) {

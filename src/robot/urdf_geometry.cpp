@@ -10,7 +10,6 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <numbers>
 #include <string_view>
 #include <utility>
 
@@ -84,21 +83,6 @@ double collada_unit(const fs::path& path) {
   return std::isfinite(metres) && metres > 0 ? metres : 1;
 }
 
-// A cylinder with half a ball at each end; `length` is that of the cylinder.
-TriangleMesh capsule(double radius, double length) {
-  constexpr int arcs = 16;
-  std::vector<std::array<double, 2>> profile;
-  for (const double side : {-1., 1.}) {
-    for (int i = 0; i <= arcs; ++i) {
-      const double from_pole = std::numbers::pi / 2 * (side < 0 ? i : arcs - i) / arcs;
-      const bool pole = side < 0 ? i == 0 : i == arcs;
-      profile.push_back({pole ? 0 : radius * std::sin(from_pole),
-                         side * (length / 2 + radius * std::cos(from_pole))});
-    }
-  }
-  return primitive::revolution(profile);
-}
-
 void remark_inspection(const TriangleMesh& mesh, const fs::path& path,
                        std::vector<std::string>& remarks) {
   for (const MeshProblem& problem : inspect(mesh).problems) {
@@ -162,7 +146,9 @@ TriangleMesh UrdfGeometry::read_shape(const XmlElement& geometry, const std::str
       return primitive::cylinder(number("radius"), number("length"));
     }
     if (shape.name == "sphere") return primitive::sphere(number("radius"));
-    if (shape.name == "capsule") return capsule(number("radius"), number("length"));
+    if (shape.name == "capsule") {
+      return primitive::capsule(number("radius"), number("length"));
+    }
   }
   throw Error({.what = "its shape is not known",
                .found = geometry.children.empty() ? "nothing" : geometry.children.front().name,

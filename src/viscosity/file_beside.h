@@ -47,6 +47,9 @@ class FileBeside {
   void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
   void move_into_place();
 
+  /// Where it is until then, for libraries that open files themselves.
+  const std::string& beside() const noexcept { return beside_; }
+
  private:
   std::filesystem::path path_;
   std::string beside_;

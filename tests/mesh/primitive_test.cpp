@@ -74,6 +74,7 @@ TEST(Primitive, RoundShapesAreSoundAtEveryNumberOfSegments) {
     SCOPED_TRACE(segments);
     expect_sound(primitive::sphere(0.3, segments));
     expect_sound(primitive::cylinder(0.3, 1, segments));
+    expect_sound(primitive::capsule(0.3, 1, segments));
     expect_sound(primitive::cone(0.3, 1, segments));
     expect_sound(primitive::torus(0.3, 0.1, segments));
     expect_sound(primitive::tube(0.3, 0.1, 1, segments));
@@ -104,6 +105,10 @@ TEST(Primitive, VerticesOfRoundShapesLieOnTheTrueSurface) {
   expect_on_surface(primitive::cone(0.5, 2), [](const Vec3& p) {
     const bool centre_of_base = from_axis(p) == 0 && p.z() == -1;
     return centre_of_base ? 0 : from_axis(p) - 0.5 * (1 - p.z()) / 2;
+  });
+  expect_on_surface(primitive::capsule(0.5, 2), [](const Vec3& p) {
+    const double beyond = std::max(std::abs(p.z()) - 1, 0.0);
+    return std::hypot(p.x(), p.y(), beyond) - 0.5;
   });
   expect_on_surface(primitive::cylinder(0.5, 2), [](const Vec3& p) {
     return std::min(std::abs(from_axis(p) - 0.5), from_axis(p)) + std::abs(std::abs(p.z()) - 1);
@@ -249,6 +254,8 @@ TEST(Primitive, SizesThatAreNoLengthsAreRefused) {
     EXPECT_THROW(primitive::sphere(bad), Error);
     EXPECT_THROW(primitive::cylinder(bad, 1), Error);
     EXPECT_THROW(primitive::cylinder(1, bad), Error);
+    EXPECT_THROW(primitive::capsule(bad, 1), Error);
+    EXPECT_THROW(primitive::capsule(1, bad), Error);
     EXPECT_THROW(primitive::cone(bad, 1), Error);
     EXPECT_THROW(primitive::torus(1, bad), Error);
     EXPECT_THROW(primitive::tube(1, bad, 1), Error);

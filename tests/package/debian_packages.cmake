@@ -4,20 +4,7 @@
 # Makes the Debian packages of this build, installs them into a root of their own, uses each there and
 # removes them again: nothing is left. Given: BUILD, SOURCE, SCRATCH (an own folder), PYTHON, and TOOLS,
 # whether the command line is among them.
-function(run)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(NOT code EQUAL 0)
-    list(JOIN ARGV " " line)
-    message(FATAL_ERROR "${line}\n${text}")
-  endif()
-  set(text "${text}" PARENT_SCOPE)
-endfunction()
-
-function(expect_text PATTERN)
-  if(NOT text MATCHES "${PATTERN}")
-    message(FATAL_ERROR "expected ${PATTERN} in\n${text}")
-  endif()
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 file(REMOVE_RECURSE ${SCRATCH})
 set(root ${SCRATCH}/root)

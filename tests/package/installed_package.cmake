@@ -3,25 +3,12 @@
 #
 # Installs this build into a folder of its own, builds the examples against it from another folder,
 # and runs them. Given: BUILD (this build), EXAMPLES (their source), SCRATCH (an own folder), FLAGS.
-function(run)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(NOT code EQUAL 0)
-    list(JOIN ARGV " " line)
-    message(FATAL_ERROR "${line}\n${text}")
-  endif()
-  set(text "${text}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 function(build_example NAME)
   run(${CMAKE_COMMAND} -S ${EXAMPLES}/${NAME} -B ${SCRATCH}/${NAME} -G Ninja
       -DCMAKE_PREFIX_PATH=${SCRATCH}/installed -DCMAKE_CXX_FLAGS=${FLAGS})
   run(${CMAKE_COMMAND} --build ${SCRATCH}/${NAME})
-endfunction()
-
-function(expect_text PATTERN)
-  if(NOT text MATCHES "${PATTERN}")
-    message(FATAL_ERROR "the example printed\n${text}")
-  endif()
 endfunction()
 
 file(REMOVE_RECURSE ${SCRATCH})
@@ -37,4 +24,10 @@ if(EXISTS ${SCRATCH}/installed/bin/vicinity)  # what the example ticks in comes 
   run(${SCRATCH}/installed/bin/vicinity build ${arm}/cell.yaml -o ${SCRATCH}/cell.vicinity)
   run(${SCRATCH}/02_arm_tick/arm_tick ${SCRATCH}/cell.vicinity ${arm}/arm.urdf ${arm}/device.yaml)
   expect_text("most felt: [a-z_]+ near (post|bench)")
+endif()
+
+if(EXISTS ${SCRATCH}/installed/include/vicinity/mujoco)
+  build_example(03_mujoco)
+  run(${SCRATCH}/03_mujoco/swing ${EXAMPLES}/03_mujoco/arm.xml)
+  expect_text("freely: over the table after 0.37 s, at 3.84 m/s\nwith drag: .* 0.29 m/s\n.*near table")
 endif()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The Vicinity authors
 # SPDX-License-Identifier: Apache-2.0
-"""The examples and the lines in the README run as they stand; type checked where mypy is there."""
+"""The examples, and the lines in README and docs, run as they stand; type checked where mypy is there."""
 
 import importlib.util
 import pathlib
@@ -19,9 +19,11 @@ EXAMPLES = REPOSITORY / "examples" / "python"
 PACKAGE = pathlib.Path(vicinity.__file__).parent
 
 
-def readme():
-    text = (REPOSITORY / "README.md").read_text(encoding="utf-8")
-    return re.search(r"```python\n(.*?)```", text, re.DOTALL).group(1)
+def shown():
+    """The Python that README and docs show."""
+    for document in [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]:
+        text = document.read_text(encoding="utf-8")
+        yield from re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
 
 
 class Examples(unittest.TestCase):
@@ -70,11 +72,14 @@ class Examples(unittest.TestCase):
             picture = np.frombuffer(pixels, np.uint8).reshape(int(height), int(width), 3)
             self.assertTrue((picture == 40).all(axis=2).any() and (picture[0, 0] == 255).all())
 
-    def test_the_readme_shows_what_runs(self):
+    def test_readme_and_docs_show_what_runs(self):
         with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "readme.py"
-            path.write_text(readme(), encoding="utf-8")
-            self.assertIn("rank", self.run_file(path, folder=folder))
+            path = pathlib.Path(folder) / "shown.py"
+            printed = ""
+            for block in shown():
+                path.write_text(block, encoding="utf-8")
+                printed += self.run_file(path, folder=folder)
+            self.assertIn("rank", printed)
 
     @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
     def test_stubs_and_examples_are_type_correct(self):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The field as numpy sees it."""
 
+import importlib.util
 import json
 import pathlib
 import sys
@@ -181,11 +182,28 @@ class Exports(unittest.TestCase):
             left = {path.suffix for path in pathlib.Path(folder).iterdir()}
             self.assertEqual(left, {".npy", ".json", ".vti"})
 
+    @unittest.skipUnless(importlib.util.find_spec("pyopenvdb"), "python3-openvdb is not installed")
+    def test_openvdb_reads_ranks_and_viscosities_where_nothing_else_is_asked_for(self):
+        import pyopenvdb
+
+        field = field_of(block(m=2, q=3))
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "ranks.vdb"
+            try:
+                vicinity.export_field(field, path)
+            except vicinity.Error as error:
+                self.assertIn("without OpenVDB", error.what)
+                self.skipTest(str(error))
+            for what in (vicinity.VoxelQuantity.rank, vicinity.VoxelQuantity.viscosity):
+                values = np.zeros(field.workspace.dims, np.float32)
+                pyopenvdb.read(str(path), what.name).copyToArray(values)
+                np.testing.assert_array_equal(values, field.voxels(what))
+
     def test_what_cannot_be_exported_is_refused_and_leaves_nothing(self):
         field = field_of(block())
         with tempfile.TemporaryDirectory() as folder:
             for name, options in [
-                ("ranks.vdb", {}),
+                ("ranks.obj", {}),
                 ("ranks.npy", {"box": [[5, 5, 5], [6, 6, 6]]}),
                 ("ranks.npy", {"box": [[1, 1, 1], [0, 0, 0]]}),
                 ("ranks.npy", {"what": vicinity.VoxelQuantity.distance}),

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "arguments.h"
-#include "demo/hot_cell.h"
 #include "progress_bar.h"
 #include "readable.h"
 #include "replay/statistics.h"
+#include "scenes/hot_cell.h"
 #include "vicinity/teleop/tick.h"
 #include "vicinity/viscosity/build_field.h"
 #include "vicinity/viscosity/field_file.h"

@@ -14,10 +14,10 @@
 #include "interruption.h"
 #include "progress_bar.h"
 #include "readable.h"
+#include "vdb/vdb_file.h"
 #include "vicinity/viscosity/field_file.h"
 #include "vicinity/viscosity/npy_file.h"
 #include "vicinity/viscosity/vti_file.h"
-#include "volume/vdb_file.h"
 
 namespace vicinity::cli {
 namespace {
@@ -53,7 +53,7 @@ int export_field(const ExportOptions& options, std::ostream& out, std::ostream& 
   if (!options.what.empty()) {
     quantities = {one_of("--what", options.what, choices)};
   } else if (format == Format::vdb) {
-    quantities.push_back(VoxelQuantity::viscosity);
+    quantities = usual_vdb_quantities;
   }
 
   const ViscosityField field = open_field(options.field);

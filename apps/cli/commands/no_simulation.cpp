@@ -3,15 +3,10 @@
 
 // `vicinity simulate` in a build without MuJoCo: says so.
 #include "commands/simulate.h"
-#include "vicinity/geometry/error.h"
+#include "simulation/not_built.h"
 
 namespace vicinity::cli {
 
-int simulate(const SimulateOptions&, std::ostream&, std::ostream&) {
-  throw Error({.where = "vicinity simulate",
-               .what = "this program was built without the simulation",
-               .hint = "building it with -DVICINITY_SIMULATION=ON, which needs libmujoco-dev and "
-                       "libqhull-dev"});
-}
+int simulate(const SimulateOptions&, std::ostream&, std::ostream&) { refuse_to_simulate(); }
 
 }  // namespace vicinity::cli

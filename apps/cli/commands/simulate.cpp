@@ -6,108 +6,57 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 #include <memory>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "arguments.h"
-#include "demo/hot_cell.h"
 #include "fresh_file.h"
 #include "interruption.h"
 #include "progress_bar.h"
 #include "readable.h"
-#include "simulate/study_report.h"
-#include "simulation/study.h"
+#include "replay/arm.h"
+#include "simulate/study_page.h"
+#include "simulation/study_setup.h"
 #include "vicinity/geometry/error.h"
-#include "vicinity/robot/urdf_file.h"
 #include "vicinity/viscosity/field_file.h"
 #include "vicinity/viscosity/scene_file.h"
 
 namespace vicinity::cli {
 namespace {
 
-constexpr std::size_t body_points = 150;
-constexpr std::uint64_t tasks_seed = 20;
 constexpr int log_every = 10;  // ms between two lines of a recording
 
-// Lengths of the demo's arm that no task brings near anything: their points would only cost time.
-const std::vector<std::string> demo_excludes = {"shoulder", "upper_arm", "elbow"};
-
-struct Prepared {
-  Workplace place;
-  std::vector<Task> tasks;
-  std::string words, urdf_text;
-  std::filesystem::path urdf;  // empty: urdf_text
-};
-
 Scene scene_of(const SimulateOptions& options) {
-  if (options.demo) return parse_scene(hot_cell_scene, {}, "the hot cell");
-  Scene scene = read_scene(options.arm.scene);
+  Scene scene = read_scene(options.scene);
   if (options.meshes.empty()) return scene;
   for (SceneObject& object : scene.objects) {
     auto* const mesh = std::get_if<MeshFile>(&object.shape);
     if (mesh == nullptr) continue;
-    mesh->path = options.meshes / mesh->path.lexically_relative(options.arm.scene.parent_path());
+    mesh->path = options.meshes / mesh->path.lexically_relative(options.scene.parent_path());
   }
   return scene;
 }
 
-Arm arm_of(const SimulateOptions& options, const Scene& scene) {
-  if (options.demo && options.arm.robot.empty()) return hot_cell_arm(options.arm);
-  ArmOptions arm = options.arm;
-  // A robot that is given needs none of the scene's; what it stands on may be a scene without one.
-  if (!options.demo && !scene.robot && !arm.robot.empty()) arm.scene.clear();
-  return read_arm(arm);
-}
-
-std::vector<std::string> excluded(const SimulateOptions& options, const Scene& scene) {
-  if (!options.arm.exclude.empty()) {
-    std::vector<std::string> names;
-    std::istringstream list(options.arm.exclude);
-    for (std::string name; std::getline(list, name, ',');) names.push_back(name);
-    return names;
-  }
-  if (options.demo && options.arm.robot.empty()) return demo_excludes;
-  return scene.robot && options.arm.robot.empty() ? scene.robot->exclude
-                                                  : std::vector<std::string>();
-}
-
-Prepared prepare(const SimulateOptions& options) {
-  if (options.demo == !options.arm.scene.empty()) {
+StudySetup setup_of(const SimulateOptions& options) {
+  if (options.demo == !options.scene.empty()) {
     throw Error({.where = "vicinity simulate",
                  .what = options.demo ? "it has its own scene in --demo" : "no scene is given",
                  .hint = "SCENE, or --demo"});
   }
-  const Scene scene = scene_of(options);
-  Arm arm = arm_of(options, scene);
-  const int links = static_cast<int>(arm.robot.links.size());
-  const int tool = arm.teleoperation.tool_link < 0 ? links - 1 : arm.teleoperation.tool_link;
-  Prepared prepared;
-  prepared.words = fmt::format("{} in {}", arm.robot.name,
-                               options.demo ? "the demo's hot cell" : options.arm.scene.string());
-  // Whether the arm can be simulated at all is known before anything is built.
-  (void)arm_as_mjcf(arm.robot, {});
-  if (!(options.step_ms >= 1 && options.step_ms <= 5) ||
-      options.step_ms != std::floor(options.step_ms)) {
-    throw Error({.where = "--step-ms",
-                 .what = "the time step of the physics cannot be used",
-                 .found = fmt::format("{:g} ms", options.step_ms),
-                 .expected = "1, 2, 3, 4 or 5 ms: beyond, contacts gain energy"});
+  StudySetup setup;
+  if (!options.demo) {
+    setup.scene = scene_of(options);
+    setup.name = options.scene.string();
   }
-  prepared.place = build_workplace(scene, std::move(arm.robot), arm.X_WB, tool,
-                                   excluded(options, scene), body_points, 1e-3 * options.step_ms);
-  prepared.tasks = !options.tasks.empty() ? read_tasks(options.tasks)
-                   : options.demo         ? parse_tasks(hot_cell_tasks, "the demo's tasks")
-                                          : tasks_for(prepared.place, tasks_seed);
-  fit_tasks(prepared.place, prepared.tasks, tasks_seed);
-  if (options.demo && options.arm.robot.empty()) {
-    prepared.urdf_text = hot_cell_arm_urdf;
-  } else {
-    prepared.urdf = options.arm.robot.empty() ? scene.robot->urdf : options.arm.robot;
-  }
-  return prepared;
+  setup.robot = options.robot;
+  if (!options.base.empty()) setup.X_WB = pose_from("--base", options.base);
+  setup.packages = options.packages;
+  setup.exclude = words_from(options.exclude);
+  setup.tool = options.tool;
+  setup.tasks = options.tasks;
+  setup.step_s = 1e-3 * options.step_ms;
+  return setup;
 }
 
 void write_text(const std::string& text, const std::filesystem::path& path) {
@@ -117,7 +66,7 @@ void write_text(const std::string& text, const std::filesystem::path& path) {
 }
 
 // Joint logs of the first operator, one for each aid and task.
-std::vector<std::string> record(const Prepared& prepared, const StudyResult& study,
+std::vector<std::string> record(const PreparedStudy& prepared, const StudyResult& study,
                                 std::uint64_t seed, const std::filesystem::path& folder) {
   std::vector<std::string> files;
   for (const CellResult& result : study.cells) {
@@ -169,16 +118,15 @@ void make_folder(const std::filesystem::path& folder) {
 }
 
 std::string command_of(const SimulateOptions& options) {
-  std::string command =
-      "vicinity simulate " + (options.demo ? "--demo" : options.arm.scene.string());
-  if (!options.arm.robot.empty()) command += " --robot " + options.arm.robot.string();
-  if (!options.arm.base.empty()) command += " --base " + options.arm.base;
+  std::string command = "vicinity simulate " + (options.demo ? "--demo" : options.scene.string());
+  if (!options.robot.empty()) command += " --robot " + options.robot.string();
+  if (!options.base.empty()) command += " --base " + options.base;
   if (!options.tasks.empty()) command += " --tasks " + options.tasks.string();
   if (!options.methods.empty()) command += " --method " + options.methods;
   const SimulateOptions usual;
-  for (const auto& folder : options.arm.packages) command += " --packages " + folder.string();
-  if (!options.arm.exclude.empty()) command += " --exclude " + options.arm.exclude;
-  if (!options.arm.tool.empty()) command += " --tool " + options.arm.tool;
+  for (const auto& folder : options.packages) command += " --packages " + folder.string();
+  if (!options.exclude.empty()) command += " --exclude " + options.exclude;
+  if (!options.tool.empty()) command += " --tool " + options.tool;
   if (!options.meshes.empty()) command += " --meshes " + options.meshes.string();
   if (options.delays_ms != usual.delays_ms) command += " --delays " + options.delays_ms;
   if (options.step_ms != usual.step_ms) command += fmt::format(" --step-ms {:g}", options.step_ms);
@@ -194,8 +142,7 @@ StudyOptions study_options(const SimulateOptions& options) {
   for (const double ms : numbers_from("--delays", options.delays_ms)) {
     study.delays_s.push_back(1e-3 * ms);
   }
-  std::istringstream list(options.methods);
-  for (std::string name; std::getline(list, name, ',');) {
+  for (const std::string& name : words_from(options.methods)) {
     study.methods.push_back(method_named(name).name);
   }
   return study;
@@ -210,7 +157,7 @@ int simulate(const SimulateOptions& options, std::ostream& out, std::ostream& er
   make_folder(options.folder / "recordings");
   auto bar = std::make_unique<ProgressBar>(err);
   bar->show("building the workplace", 0);
-  const Prepared prepared = prepare(options);
+  const PreparedStudy prepared = prepare_study(setup_of(options));
   const WhileWriting to_the_end;  // a signal ends the study at the next trial
   study_wanted.stop = interruption_asked;
   study_wanted.progress = [&](std::string_view what, double done) { bar->show(what, done); };

@@ -7,15 +7,19 @@
 #include <filesystem>
 #include <ostream>
 #include <string>
-
-#include "replay/arm.h"
+#include <vector>
 
 namespace vicinity::cli {
 
 struct SimulateOptions {
-  bool demo = false;             ///< the embedded hot cell with its arm and tasks
-  ArmOptions arm;                ///< arm.scene is the scene
-  std::filesystem::path tasks;   ///< YAML; empty: the demo's, or made for the scene
+  bool demo = false;                            ///< the embedded hot cell with its arm and tasks
+  std::filesystem::path scene;                  ///< with a `robot` block, or with `robot` here
+  std::filesystem::path robot;                  ///< URDF
+  std::vector<std::filesystem::path> packages;  ///< folders for package:// addresses
+  std::string base;                             ///< "x,y,z,r,p,y" [m, rad]
+  std::string exclude;                          ///< "link,link": they feel nothing
+  std::string tool;                             ///< link
+  std::filesystem::path tasks;                  ///< YAML; empty: the demo's, or made for the scene
   std::filesystem::path meshes;  ///< folder that relative mesh paths start at; empty: the scene's
   std::filesystem::path folder;  ///< to leave everything in
   int trials = 200;

@@ -9,10 +9,9 @@
 #include <utility>
 
 #include "arguments.h"
-#include "demo/hot_cell.h"
 #include "drag_words.h"
+#include "scenes/hot_cell.h"
 #include "vicinity/geometry/error.h"
-#include "vicinity/geometry/nearest_word.h"
 #include "vicinity/robot/urdf_file.h"
 #include "vicinity/teleop/device.h"
 #include "vicinity/viscosity/scene_file.h"
@@ -23,21 +22,6 @@ namespace {
 constexpr double usual_rate = 1000;
 // A tick that comes after this many periods or more came too late.
 constexpr double late_periods = 1.5;
-
-std::vector<std::string> words_from(const std::string& text) {
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return words;
-}
-
-Pose pose_from(std::string_view option, const std::string& text) {
-  const auto n = numbers_from(option, text, 6);
-  return pose_from_rpy({n[0], n[1], n[2]}, {n[3], n[4], n[5]});
-}
 
 // What the scene says, and over it what the command line says.
 SceneRobot placed_robot(const ArmOptions& options) {
@@ -60,18 +44,6 @@ SceneRobot placed_robot(const ArmOptions& options) {
     throw Error({.what = "no robot is given", .hint = "--robot URDF, or --scene SCENE with one"});
   }
   return robot;
-}
-
-int tool_link(const RobotModel& robot, const std::string& name) {
-  if (name.empty()) return -1;
-  if (const auto link = robot.find_link(name)) return *link;
-  std::vector<std::string> links;
-  for (const Link& link : robot.links) links.push_back(link.name);
-  throw Error({.where = "--tool",
-               .what = "the robot has no such link",
-               .found = "'" + name + "'",
-               .expected = "a link of '" + robot.name + "'",
-               .hint = nearest_word(name, links)});
 }
 
 MasterArm master_from(const std::string& text) {
@@ -123,7 +95,9 @@ Arm fit_out(RobotLoad load, const SceneRobot& placed, const ArmOptions& options)
   add_device(options, arm);
   arm.robot = std::move(load.robot);
   arm.remarks = std::move(load.remarks);
-  arm.teleoperation.tool_link = tool_link(arm.robot, placed.tool);
+  if (!placed.tool.empty()) {
+    arm.teleoperation.tool_link = link_named(arm.robot, placed.tool, "--tool");
+  }
   BodyPointOptions points;
   points.points_per_m2 = placed.points_per_m2;
   points.total = options.points;

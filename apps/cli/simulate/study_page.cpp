@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "simulate/study_page.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include "picture/chart.h"
 #include "readable.h"
 #include "simulate/interval_picture.h"
-#include "simulate/study_report.h"
 
 namespace vicinity::cli {
 namespace {

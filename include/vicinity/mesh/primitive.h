@@ -25,6 +25,9 @@ TriangleMesh box(const Vec3& size);
 TriangleMesh sphere(double radius, int segments = usual_segments);
 TriangleMesh cylinder(double radius, double height, int segments = usual_segments);
 
+/// Cylinder of that height with half a ball at each end.
+TriangleMesh capsule(double radius, double height, int segments = usual_segments);
+
 /// Apex up.
 TriangleMesh cone(double base_radius, double height, int segments = usual_segments);
 

@@ -85,6 +85,10 @@ struct RobotModel {
   std::optional<int> find_joint(std::string_view name) const noexcept;
 };
 
+/// The link of that name. Errors: throws Error, with the nearest name, where there is none.
+/// @param where  what asks for it
+int link_named(const RobotModel& robot, const std::string& name, const std::string& where);
+
 /// Errors: throws Error for a model that breaks a promise made above: joints that do not match the
 /// links, a parent that does not come first, an axis that is not a unit vector, a coordinate that
 /// does not exist, a number that is not finite.

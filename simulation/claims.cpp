@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "simulate/study_report.h"
+#include "simulation/study_report.h"
 
-namespace vicinity::cli {
+namespace vicinity {
 namespace {
 
 using Verdict = Claim::Verdict;
@@ -159,4 +159,4 @@ std::vector<Claim> claims_of(const StudyReport& report) {
   return claims;
 }
 
-}  // namespace vicinity::cli
+}  // namespace vicinity

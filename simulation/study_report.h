@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-/// What a study says, as tables, verdicts and a page.
+/// What a study says, as tables and verdicts.
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "simulation/study.h"
 
-namespace vicinity::cli {
+namespace vicinity {
 
 using Table = std::vector<std::vector<std::string>>;  // first row: headings
 
@@ -51,7 +50,4 @@ std::string as_markdown(const StudyReport& report);
 nlohmann::ordered_json as_json(const StudyReport& report);
 std::string trials_csv(const StudyReport& report);
 
-/// Writes pictures and index.html. Errors: throws Error where the folder cannot be written.
-void write_study_page(const StudyReport& report, const std::filesystem::path& folder);
-
-}  // namespace vicinity::cli
+}  // namespace vicinity

@@ -10,7 +10,11 @@
 
 #include "vicinity/viscosity/voxel_quantity.h"
 
-namespace vicinity::cli {
+namespace vicinity {
+
+/// What a file holds where nothing else is asked for.
+inline const std::vector<VoxelQuantity> usual_vdb_quantities = {VoxelQuantity::rank,
+                                                                VoxelQuantity::viscosity};
 
 /// Writes one OpenVDB float grid per quantity, named as the quantity; empty voxels are left out.
 /// Floats for whole numbers too, because common readers know no integer grids.
@@ -20,4 +24,4 @@ void write_vdb(const ViscosityField& field, const VoxelBox& box,
                const std::vector<VoxelQuantity>& quantities, const std::filesystem::path& path,
                const std::function<void(double)>& progress);
 
-}  // namespace vicinity::cli
+}  // namespace vicinity

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "volume/vdb_file.h"
+#include "vdb/vdb_file.h"
 
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
@@ -11,10 +11,10 @@
 #include <cstring>
 #include <limits>
 
-#include "fresh_file.h"
+#include "file_beside.h"
 #include "vicinity/geometry/error.h"
 
-namespace vicinity::cli {
+namespace vicinity {
 namespace {
 
 float value_of(const std::byte* at, VoxelQuantity quantity) {
@@ -45,7 +45,7 @@ void write_vdb(const ViscosityField& field, const VoxelBox& box,
   const Workspace& grid = field.workspace();
   openvdb::GridPtrVec grids;
   double done = 0;
-  FreshFile file(path);
+  FileBeside file(path);
   for (const VoxelQuantity quantity : quantities) {
     const float empty = background(quantity);
     auto volume = openvdb::FloatGrid::create(empty);
@@ -66,7 +66,6 @@ void write_vdb(const ViscosityField& field, const VoxelBox& box,
         }
       }
       if ((k + 1) % planes_between_prunings == 0) openvdb::tools::prune(volume->tree());
-      stop_if_interrupted();
       progress((done + static_cast<double>(k + 1) / planes.count()) /
                static_cast<double>(quantities.size()));
     }
@@ -75,13 +74,13 @@ void write_vdb(const ViscosityField& field, const VoxelBox& box,
     grids.push_back(volume);
   }
   try {
-    openvdb::io::File out(file.beside().string());
+    openvdb::io::File out(file.beside());
     out.write(grids);
     out.close();
   } catch (const openvdb::Exception& error) {
     throw Error({.where = path.string(), .what = "cannot be written", .found = error.what()});
   }
-  file.commit();
+  file.move_into_place();
 }
 
-}  // namespace vicinity::cli
+}  // namespace vicinity

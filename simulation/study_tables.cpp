@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "simulate/study_report.h"
+#include "simulation/study_report.h"
 
-namespace vicinity::cli {
+namespace vicinity {
 namespace {
 
 std::string share(const Estimate& e) {
@@ -26,22 +26,6 @@ std::string if_touched(const Summary& summary, const Estimate& e, double factor,
 
 std::string joules(double j) {
   return j < 5e-8 ? "0" : j < 1e-4 ? fmt::format("{:.1e}", j) : fmt::format("{:.4f}", j);
-}
-
-const char* name_of(Part part) {
-  switch (part) {
-    case Part::tasks:
-      return "tasks";
-    case Part::delay:
-      return "delay";
-    case Part::beside:
-      return "beside";
-    case Part::strict:
-      return "strict";
-    case Part::devices:
-      return "devices";
-  }
-  return "";
 }
 
 std::string markdown(const Table& table) {
@@ -230,7 +214,7 @@ nlohmann::ordered_json as_json(const StudyReport& report) {
   for (const CellResult& result : report.study.cells) {
     const Summary& s = result.summary;
     const Condition& condition = result.cell.condition;
-    json["cells"].push_back({{"part", name_of(result.cell.part)},
+    json["cells"].push_back({{"part", to_string(result.cell.part)},
                              {"task", report.tasks[result.cell.task].name},
                              {"method", result.cell.method.name},
                              {"mode", to_string(result.cell.method.mode)},
@@ -262,7 +246,7 @@ std::string trials_csv(const StudyReport& report) {
   for (const CellResult& result : report.study.cells) {
     const Condition& condition = result.cell.condition;
     const std::string head = fmt::format(
-        "{},{},{},{:g},{},{},{}", name_of(result.cell.part), report.tasks[result.cell.task].name,
+        "{},{},{},{:g},{},{},{}", to_string(result.cell.part), report.tasks[result.cell.task].name,
         result.cell.method.name, 1e3 * condition.delay_s, to_string(condition.placement),
         condition.device.name, to_string(result.cell.method.mode));
     for (std::size_t n = 0; n < result.trials.size(); ++n) {
@@ -277,4 +261,4 @@ std::string trials_csv(const StudyReport& report) {
   return text;
 }
 
-}  // namespace vicinity::cli
+}  // namespace vicinity

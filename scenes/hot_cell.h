@@ -6,7 +6,7 @@
 
 #include <string_view>
 
-namespace vicinity::cli {
+namespace vicinity {
 
 /// The text of scenes/hot_cell.yaml.
 extern const std::string_view hot_cell_scene;
@@ -17,4 +17,4 @@ extern const std::string_view hot_cell_arm_urdf;
 /// The text of scenes/hot_cell_tasks.yaml.
 extern const std::string_view hot_cell_tasks;
 
-}  // namespace vicinity::cli
+}  // namespace vicinity
