@@ -26,6 +26,7 @@ packages=(
 #   --benchmarks     the benchmarks
 #   --peers          the benchmarks, and what scripts/bench.sh measures us beside (150 MB)
 #   --simulation     what VICINITY_SIMULATION needs
+#   --bridge         what VICINITY_BRIDGE needs, and the second DDS that its tests talk to
 #   --viewer         the viewer's page, which npm builds; without it vicinity serve has no page
 #   --viewer-tests   a browser (700 MB) for the tests that look at the page, and for serve --shot
 # Node, npm and a browser that came from elsewhere will do.
@@ -36,9 +37,10 @@ for flag in "$@"; do
                         libdynamicedt3d-dev python3-scipy) ;;
     # The first cannot be found without the second.
     --simulation) packages+=(libmujoco-dev libqhull-dev) ;;
+    --bridge) packages+=(cyclonedds-dev libfastrtps-dev libfastcdr-dev) ;;
     --viewer) command -v npm >/dev/null || packages+=(nodejs npm) ;;
     --viewer-tests) command -v chromium >/dev/null || packages+=(chromium) ;;
-    *) echo "install_packages.sh: there is no $flag; --benchmarks, --peers, --simulation, --viewer, --viewer-tests" >&2; exit 2 ;;
+    *) echo "install_packages.sh: there is no $flag; --benchmarks, --peers, --simulation, --bridge, --viewer, --viewer-tests" >&2; exit 2 ;;
   esac
 done
 
