@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The Vicinity authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "arm_loop.h"
+
+#include "replay/real_time.h"
+
+namespace vicinity::bridge {
+namespace {
+
+constexpr auto silence_ns = static_cast<std::int64_t>(1e9 * ArmLoop::longest_silence_s);
+
+}  // namespace
+
+ArmLoop::ArmLoop(Teleoperation& teleoperation) : teleoperation_(teleoperation) {
+  thread_ = std::thread([this] { run(); });
+}
+
+ArmLoop::~ArmLoop() {
+  stop_.store(true);
+  came_.ring();
+  thread_.join();
+}
+
+bool ArmLoop::give(const ArmSample& sample) noexcept {
+  const bool taken = in_.push(sample);
+  came_.ring();
+  return taken;
+}
+
+bool ArmLoop::take(Answer& answer, std::int64_t longest_ns) noexcept {
+  if (out_.pop(answer)) return true;
+  done_.wait(longest_ns);
+  return out_.pop(answer);
+}
+
+void ArmLoop::run() noexcept {
+  ArmSample sample;  // the last one, or what stands for none
+  Heard none = Heard::nothing_yet;
+  std::int64_t heard_ns = cli::monotonic_ns();
+  while (!stop_.load(std::memory_order_relaxed)) {
+    while (in_.pop(sample)) {
+      answer(sample);
+      none = Heard::silence;
+      heard_ns = cli::monotonic_ns();
+    }
+    const std::int64_t left = heard_ns + silence_ns - cli::monotonic_ns();
+    if (left > 0) {
+      came_.wait(left);
+      continue;
+    }
+    sample.heard = none;
+    answer(sample);
+    heard_ns = cli::monotonic_ns();  // and again after as long
+  }
+}
+
+void ArmLoop::answer(const ArmSample& sample) noexcept {
+  answer_.sample = sample;
+  if (sample.heard == Heard::state) {
+    const Input input{.time_s = sample.time_s,
+                      .q = sample.q.data(),
+                      .qd = sample.has_velocities ? sample.qd.data() : nullptr,
+                      .joint_count = static_cast<int>(sample.q.size()),
+                      .X_WB = sample.X_WB};
+    (void)teleoperation_.tick(input, answer_.output);  // the output holds its status
+  } else {
+    const EnergyBalance energy = answer_.output.energy;
+    answer_.output = {};
+    answer_.output.torque = AxisVector::Zero(teleoperation_.joint_count());
+    answer_.output.energy = energy;
+  }
+  // Where nobody takes answers, the newest are lost: the wire is slower than the arm.
+  (void)out_.push(answer_);
+  done_.ring();
+}
+
+}  // namespace vicinity::bridge
