@@ -29,9 +29,13 @@ bool ArmLoop::give(const ArmSample& sample) noexcept {
 }
 
 bool ArmLoop::take(Answer& answer, std::int64_t longest_ns) noexcept {
-  if (out_.pop(answer)) return true;
-  done_.wait(longest_ns);
-  return out_.pop(answer);
+  const std::int64_t until_ns = cli::monotonic_ns() + longest_ns;
+  while (!out_.pop(answer)) {
+    const std::int64_t left = until_ns - cli::monotonic_ns();
+    if (left <= 0) return false;
+    done_.wait(left);  // it may still ring for one that was taken
+  }
+  return true;
 }
 
 void ArmLoop::run() noexcept {

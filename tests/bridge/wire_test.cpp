@@ -76,7 +76,7 @@ TEST(CrossVendor, FastDdsPublishesJointStatesAndReadsWrenches) {
   options.arm.base = cli_test::small_arm_base;
   options.domain = own_domain();
   options.recording = folder / "felt.mcap";
-  options.seconds = 10;
+  options.seconds = 7;
   options.json = true;
   std::ostringstream out, err;
   std::thread bridging([&] { bridge(options, out, err); });

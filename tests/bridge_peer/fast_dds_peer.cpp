@@ -5,8 +5,8 @@
 //
 //   fast_dds_peer DOMAIN SECONDS
 //
-// Publishes joint states at 1 kHz of an arm with the joints turn, bend and slide, counts the
-// wrenches that come back, and says what it saw in one line of JSON.
+// Publishes joint states at 1 kHz of an arm with the joints turn, bend and slide, once the first
+// has been answered; counts the wrenches that come back, and says what it saw in one line of JSON.
 
 #include <fastcdr/Cdr.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
@@ -34,10 +34,12 @@
 
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
+namespace fast = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastcdr::Cdr;
 using eprosima::fastcdr::FastBuffer;
+
+constexpr std::int64_t start_ns = 1'700'000'000'000'000'000;
 
 struct JointState {
   std::int32_t sec = 0;
@@ -68,7 +70,7 @@ void take(Cdr& cdr, Wrench& m) {
 }
 
 template <class Message>
-class Type : public dds::TopicDataType {
+class Type : public fast::TopicDataType {
  public:
   explicit Type(const char* name) {
     setName(name);
@@ -103,10 +105,10 @@ class Type : public dds::TopicDataType {
   bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
 };
 
-struct Listener : dds::DataReaderListener {
-  void on_data_available(dds::DataReader* reader) override {
+struct Listener : fast::DataReaderListener {
+  void on_data_available(fast::DataReader* reader) override {
     Wrench wrench;
-    dds::SampleInfo info;
+    fast::SampleInfo info;
     while (reader->take_next_sample(&wrench, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;
       ++wrenches;
@@ -121,14 +123,14 @@ struct Listener : dds::DataReaderListener {
     }
   }
   std::uint64_t wrenches = 0, doubled = 0, backwards = 0;
-  std::int64_t last = 0;
+  std::atomic<std::int64_t> last = 0;
   double strongest = 0;
   std::string frame;
   std::set<std::int64_t> stamps;
 };
 
-dds::DomainParticipantQos loopback() {
-  dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
+fast::DomainParticipantQos loopback() {
+  fast::DomainParticipantQos qos = fast::PARTICIPANT_QOS_DEFAULT;
   const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList.push_back("127.0.0.1");
   qos.transport().use_builtin_transports = false;
@@ -147,37 +149,37 @@ dds::DomainParticipantQos loopback() {
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const double seconds = std::atof(argv[2]);
-  auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(
+  auto* participant = fast::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(std::atoi(argv[1])), loopback());
   if (participant == nullptr) return 1;
-  dds::TypeSupport states(new Type<JointState>("sensor_msgs::msg::dds_::JointState_"));
-  dds::TypeSupport wrenches(new Type<Wrench>("geometry_msgs::msg::dds_::WrenchStamped_"));
+  fast::TypeSupport states(new Type<JointState>("sensor_msgs::msg::dds_::JointState_"));
+  fast::TypeSupport wrenches(new Type<Wrench>("geometry_msgs::msg::dds_::WrenchStamped_"));
   states.register_type(participant);
   wrenches.register_type(participant);
   auto* out =
-      participant->create_topic("rt/joint_states", states.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+      participant->create_topic("rt/joint_states", states.get_type_name(), fast::TOPIC_QOS_DEFAULT);
   auto* in = participant->create_topic("rt/vicinity/wrench", wrenches.get_type_name(),
-                                       dds::TOPIC_QOS_DEFAULT);
-  dds::DataWriterQos writer_qos = dds::DATAWRITER_QOS_DEFAULT;
-  writer_qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
-  writer_qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+                                       fast::TOPIC_QOS_DEFAULT);
+  fast::DataWriterQos writer_qos = fast::DATAWRITER_QOS_DEFAULT;
+  writer_qos.reliability().kind = fast::RELIABLE_RELIABILITY_QOS;
+  writer_qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
   writer_qos.history().depth = 100;
-  dds::DataReaderQos reader_qos = dds::DATAREADER_QOS_DEFAULT;
-  reader_qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
-  reader_qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+  fast::DataReaderQos reader_qos = fast::DATAREADER_QOS_DEFAULT;
+  reader_qos.reliability().kind = fast::RELIABLE_RELIABILITY_QOS;
+  reader_qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
   reader_qos.history().depth = 100;
   Listener listener;
-  auto* writer =
-      participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT)->create_datawriter(out, writer_qos);
-  auto* reader = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT)
+  auto* writer = participant->create_publisher(fast::PUBLISHER_QOS_DEFAULT)
+                     ->create_datawriter(out, writer_qos);
+  auto* reader = participant->create_subscriber(fast::SUBSCRIBER_QOS_DEFAULT)
                      ->create_datareader(in, reader_qos, &listener);
   if (writer == nullptr || reader == nullptr) return 1;
 
   using Clock = std::chrono::steady_clock;
   const auto found_by = Clock::now() + std::chrono::seconds(20);
   for (bool found = false; !found;) {
-    dds::PublicationMatchedStatus publications;
-    dds::SubscriptionMatchedStatus subscriptions;
+    fast::PublicationMatchedStatus publications;
+    fast::SubscriptionMatchedStatus subscriptions;
     writer->get_publication_matched_status(publications);
     reader->get_subscription_matched_status(subscriptions);
     found = publications.current_count > 0 && subscriptions.current_count > 0;
@@ -187,17 +189,24 @@ int main(int argc, char** argv) {
 
   JointState state;
   state.name = {"slide", "turn", "bend"};
-  std::set<std::int64_t> sent;
   const auto begin = Clock::now();
-  for (int k = 0; k < seconds * 1000; ++k) {
-    std::this_thread::sleep_until(begin + std::chrono::milliseconds(k));
-    const double t = 0.001 * k, swing = 0.5 - 0.5 * std::cos(2 * t);
-    // Stamped with when it was due: 1 kHz, whatever this machine makes of it.
-    const std::int64_t stamp = 1'700'000'000'000'000'000 + 1'000'000LL * k;
+  // Stamped with when it was due: 1 kHz, whatever this machine makes of it.
+  const auto say = [&](std::int64_t ms) {
+    std::this_thread::sleep_until(begin + std::chrono::milliseconds(ms));
+    const std::int64_t stamp = start_ns + 1'000'000 * ms;
     state.sec = static_cast<std::int32_t>(stamp / 1'000'000'000);
     state.nanosec = static_cast<std::uint32_t>(stamp % 1'000'000'000);
+    return writer->write(&state) ? stamp : 0;
+  };
+  // That we have found it does not say that it has found us: ask until it answers.
+  std::int64_t first = 0;
+  state.position = {0, 0.7, 0};
+  for (; listener.last < start_ns && Clock::now() < found_by; first += 10) say(first);
+  std::set<std::int64_t> sent;
+  for (int k = 0; k < seconds * 1000; ++k) {
+    const double t = 0.001 * k, swing = 0.5 - 0.5 * std::cos(2 * t);
     state.position = {0.02 * swing, 0.7 + 0.3 * swing, 0.2 * swing};
-    if (writer->write(&state)) sent.insert(stamp);
+    if (const std::int64_t stamp = say(first + k); stamp > 0) sent.insert(stamp);
   }
   writer->wait_for_acknowledgments({5, 0});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
