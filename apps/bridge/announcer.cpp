@@ -39,9 +39,10 @@ std::byte level_of(const Answer& answer) noexcept {
   }
 }
 
-Announcer::Announcer(dds::Participant& participant, const RobotModel& robot,
-                     const ViscosityField& field, int tool_link, double half_speed_drag)
-    : messages_(robot, field, tool_link),
+Announcer::Announcer(dds::Participant& participant, const FieldInUse& field,
+                     const RobotModel& robot, int tool_link, double half_speed_drag)
+    : field_(field),
+      messages_(robot, tool_link),
       kinematics_(robot),
       half_speed_drag_(half_speed_drag),
       wrench_(participant.writer<ros2::WrenchStamped>(ros2::topic::wrench)),
@@ -58,6 +59,10 @@ void Announcer::announce(const Answer& answer) {
   ++statuses_[status];
   const bool felt =
       sample.heard == Heard::state && output.torque.allFinite() && sample.q.allFinite();
+  if (named_.is_new(answer)) {
+    messages_.name_objects(field_.objects(answer));
+    said_.clear();
+  }
   if (felt) find_scale(answer);
   if (sample.heard == Heard::silence || sample.heard == Heard::nothing_yet) scale_ = 0;
   const std::span<const double> q(last_q_.data(), static_cast<std::size_t>(last_q_.size()));

@@ -9,6 +9,7 @@
 
 #include "arm_loop.h"
 #include "dds/participant.h"
+#include "field_in_use.h"
 #include "replay/felt_messages.h"
 
 namespace vicinity::bridge {
@@ -25,7 +26,7 @@ std::byte level_of(const Answer& answer) noexcept;
 class Announcer {
  public:
   /// @param half_speed_drag  as speed_scale() [N·s/m], > 0
-  Announcer(dds::Participant& participant, const RobotModel& robot, const ViscosityField& field,
+  Announcer(dds::Participant& participant, const FieldInUse& field, const RobotModel& robot,
             int tool_link, double half_speed_drag);
 
   void announce(const Answer& answer);
@@ -44,6 +45,8 @@ class Announcer {
   }
   void find_scale(const Answer& answer);
 
+  const FieldInUse& field_;
+  FieldNumber named_;
   cli::FeltMessages messages_;
   ForwardKinematics kinematics_;
   double half_speed_drag_;

@@ -12,7 +12,7 @@ constexpr auto silence_ns = static_cast<std::int64_t>(1e9 * ArmLoop::longest_sil
 
 }  // namespace
 
-ArmLoop::ArmLoop(Teleoperation& teleoperation) : teleoperation_(teleoperation) {
+ArmLoop::ArmLoop(int joints) : joints_(joints) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -61,17 +61,22 @@ void ArmLoop::run() noexcept {
 
 void ArmLoop::answer(const ArmSample& sample) noexcept {
   answer_.sample = sample;
-  if (sample.heard == Heard::state) {
+  Teleoperation* const teleoperation = teleoperation_.load(std::memory_order_acquire);
+  if (sample.heard == Heard::state && teleoperation == nullptr) {
+    answer_.sample.heard = Heard::no_field;
+  }
+  if (answer_.sample.heard == Heard::state) {
     const Input input{.time_s = sample.time_s,
                       .q = sample.q.data(),
                       .qd = sample.has_velocities ? sample.qd.data() : nullptr,
                       .joint_count = static_cast<int>(sample.q.size()),
                       .X_WB = sample.X_WB};
-    (void)teleoperation_.tick(input, answer_.output);  // the output holds its status
+    (void)teleoperation->tick(input, answer_.output);  // the output holds its status
+    fields_taken_.store(answer_.output.counts.fields_taken, std::memory_order_release);
   } else {
     const EnergyBalance energy = answer_.output.energy;
     answer_.output = {};
-    answer_.output.torque = AxisVector::Zero(teleoperation_.joint_count());
+    answer_.output.torque = AxisVector::Zero(joints_);
     answer_.output.energy = energy;
   }
   // Where nobody takes answers, the newest are lost: the wire is slower than the arm.

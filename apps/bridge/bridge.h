@@ -15,12 +15,14 @@
 namespace vicinity::bridge {
 
 struct BridgeOptions {
-  std::filesystem::path input;  ///< field, or scene (.yaml, .yml)
+  std::filesystem::path input;  ///< field, or scene (.yaml, .yml); where one is followed, the copy
   cli::ArmOptions arm;
   std::string world = "world";      ///< the frame that the workspace is called
   std::uint32_t domain = 0;         ///< ROS_DOMAIN_ID
-  std::string name_space;           ///< "/left": in front of every topic
+  std::string name_space;           ///< "/left": in front of every topic but of transforms
   std::filesystem::path dds;        ///< Cyclone's configuration; empty: this machine alone
+  std::string share_field;          ///< under this name, "/cell"; empty: it is not shared
+  std::string follow_field;         ///< the one that is shared under this name
   double half_speed_drag = 1;       ///< of the tool: it halves the speed scale [N·s/m]
   std::filesystem::path recording;  ///< .mcap; empty: none
   std::optional<double> seconds;    ///< end by itself

@@ -22,6 +22,8 @@ const char* to_string(Heard heard) noexcept {
   switch (heard) {
     case Heard::state:
       return "state";
+    case Heard::no_field:
+      return "no field";
     case Heard::nothing_yet:
       return "nothing yet";
     case Heard::silence:

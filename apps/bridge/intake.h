@@ -21,6 +21,7 @@ namespace vicinity::bridge {
 /// `deadline missed`, NaN `not finite`.
 enum class Heard : std::uint8_t {
   state,          ///< a state of our arm, for the tick
+  no_field,       ///< a state of our arm, but no field has come yet
   nothing_yet,    ///< no joint state has come since the start
   silence,        ///< none for longer than the loop allows
   late,           ///< it was under way for much longer than the quickest

@@ -35,11 +35,12 @@ int opened(const std::filesystem::path& path) {
 
 }  // namespace
 
-Recorder::Recorder(const std::filesystem::path& path, const RobotModel& robot,
-                   const ViscosityField& field, int tool_link)
+Recorder::Recorder(const std::filesystem::path& path, const FieldInUse& field,
+                   const RobotModel& robot, int tool_link)
     : path_(path),
+      field_(field),
       file_(opened(path)),
-      recording_([this](std::string_view bytes) { write(bytes); }, robot, field, tool_link) {
+      recording_([this](std::string_view bytes) { write(bytes); }, robot, {}, tool_link) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -80,6 +81,7 @@ void Recorder::run() {
         last = stop_;
       }
       for (const Answer& answer : now) {
+        if (named_.is_new(answer)) recording_.name_objects(field_.objects(answer));
         const ArmSample& sample = answer.sample;
         const auto n = static_cast<std::size_t>(sample.q.size());
         recording_.add(cli::nanoseconds_of(sample.stamp), {sample.q.data(), n},

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "arm_loop.h"
+#include "field_in_use.h"
 #include "replay/mcap_recording.h"
 
 namespace vicinity::bridge {
@@ -21,7 +22,7 @@ namespace vicinity::bridge {
 class Recorder {
  public:
   /// Errors: throws Error where the file cannot be written.
-  Recorder(const std::filesystem::path& path, const RobotModel& robot, const ViscosityField& field,
+  Recorder(const std::filesystem::path& path, const FieldInUse& field, const RobotModel& robot,
            int tool_link);
   /// Ends the file with its summary.
   ~Recorder();
@@ -41,6 +42,8 @@ class Recorder {
   void write(std::string_view bytes);
 
   std::filesystem::path path_;
+  const FieldInUse& field_;
+  FieldNumber named_;
   int file_ = -1;
   cli::McapRecording recording_;
   mutable std::mutex mutex_;

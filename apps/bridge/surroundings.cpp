@@ -25,11 +25,10 @@ constexpr double metres_per_newton = 0.1;
 
 }  // namespace
 
-Surroundings::Surroundings(const RobotModel& robot, const BodyPoints& points,
-                           const ViscosityField& field, int tool_link, std::string world)
+Surroundings::Surroundings(const RobotModel& robot, const BodyPoints& points, int tool_link,
+                           std::string world)
     : robot_(robot),
       points_(points),
-      field_(field),
       tool_link_(tool_link < 0 ? robot.links.size() - 1 : static_cast<std::size_t>(tool_link)),
       world_(std::move(world)),
       kinematics_(robot),
@@ -43,7 +42,7 @@ ros2::PointCloud2 Surroundings::layers(const Answer& answer) {
         {.name = name, .offset = static_cast<std::uint32_t>(4 * cloud.columns.size())});
   }
   cloud.point_step = 16;
-  if (answer.sample.heard != Heard::state || !answer.sample.q.allFinite()) return cloud;
+  if (!field_ || answer.sample.heard != Heard::state || !answer.sample.q.allFinite()) return cloud;
 
   kinematics_.update(answer.sample.q.data(), at_rest_.data(), answer.sample.X_WB);
   std::vector<Ball> balls;
@@ -59,7 +58,7 @@ ros2::PointCloud2 Surroundings::layers(const Answer& answer) {
     }
   }
   // Its voxels, as far as there are any.
-  const Workspace& space = field_.workspace();
+  const Workspace& space = field_->workspace();
   const Vec3 dims(space.dims.i, space.dims.j, space.dims.k);
   const Eigen::Vector3i first =
       space.to_grid(around.min()).cwiseMax(0.0).cwiseMin(dims).array().floor().cast<int>();
@@ -69,7 +68,7 @@ ros2::PointCloud2 Surroundings::layers(const Answer& answer) {
   for (int k = first[2]; k < last[2]; ++k) {
     for (int j = first[1]; j < last[1]; ++j) {
       for (int i = first[0]; i < last[0]; ++i) {
-        const VoxelRecord& record = field_.records()[field_.code_at({i, j, k})];
+        const VoxelRecord& record = field_->records()[field_->code_at({i, j, k})];
         if (record.kind != VoxelKind::neighbour) continue;
         const Vec3 p = space.origin + space.voxel_size * Vec3(i + 0.5, j + 0.5, k + 0.5);
         const bool is_near = std::ranges::any_of(balls, [&](const Ball& ball) {
@@ -105,7 +104,7 @@ ros2::MarkerArray Surroundings::markers(const Answer& answer) {
   why.scale = {0, 0, 0.04};
   why.color = {1, 1, 1, 1};
   why.text = status_of(answer);
-  const bool known = answer.sample.heard == Heard::state && answer.sample.q.allFinite();
+  const bool known = field_ && answer.sample.heard == Heard::state && answer.sample.q.allFinite();
   if (!known) {
     force.action = ros2::Marker::remove;
     array.markers.push_back(std::move(why));
@@ -120,7 +119,7 @@ ros2::MarkerArray Surroundings::markers(const Answer& answer) {
   if (reason.link >= 0 && reason.object >= 0) {
     why.text = fmt::format("{} near {}: rank {}, {:.0f} mm, {:.3g} N",
                            robot_.links[static_cast<std::size_t>(reason.link)].name,
-                           field_.objects()[static_cast<std::size_t>(reason.object)].name,
+                           field_->objects()[static_cast<std::size_t>(reason.object)].name,
                            reason.rank, 1000 * reason.distance_m, answer.output.tool.force.norm());
   }
   array.markers.push_back(std::move(why));

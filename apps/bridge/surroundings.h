@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "arm_loop.h"
 #include "ros2/shown_messages.h"
@@ -21,9 +23,11 @@ class Surroundings {
   static constexpr double near_m = 0.1;               ///< from the arm's surface
   static constexpr std::size_t most_points = 20'000;  ///< in a cloud: about 300 kB
 
-  /// All three outlive it. @param world  the frame that W is called
-  Surroundings(const RobotModel& robot, const BodyPoints& points, const ViscosityField& field,
-               int tool_link, std::string world);
+  /// Both outlive it. @param world  the frame that W is called
+  Surroundings(const RobotModel& robot, const BodyPoints& points, int tool_link, std::string world);
+
+  /// Another field from now on.
+  void look_at(ViscosityField field) { field_ = std::move(field); }
 
   /// Centres of ranked voxels no farther than near_m from the balls that hold the arm's points,
   /// as x, y, z and rank, float32 each; of more than most_points every second, third, ... is kept.
@@ -35,7 +39,7 @@ class Surroundings {
  private:
   const RobotModel& robot_;
   const BodyPoints& points_;
-  const ViscosityField& field_;
+  std::optional<ViscosityField> field_;
   std::size_t tool_link_;
   std::string world_;
   ForwardKinematics kinematics_;

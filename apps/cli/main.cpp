@@ -55,6 +55,7 @@ constexpr const char* welcome =
   vicinity replay F ...         a joint log of an arm: what its operator would feel
   vicinity slice F ...          a picture of the layers
   vicinity serve F              see the layers and drive an arm through them, in a browser
+  vicinity bridge F ...         feel for an arm in ROS 2, or on two machines, over DDS
   vicinity export F -o ...      for numpy, ParaView, Blender
   vicinity simulate ...         operators in simulation: does any of it help?
   vicinity reproduce -o DIR     the paper's figures and tables, ours beside theirs
@@ -286,7 +287,9 @@ void add_serve(CLI::App& parent, Run& run) {
 void add_bridge(CLI::App& parent, Run& run) {
   Command<bridge::BridgeOptions> command(
       parent, "bridge", "Feel for an arm in ROS 2: joint states in over DDS, wrench and reason out",
-      "vicinity bridge cell.vicinity --robot arm.urdf --base 0,0,0.8,0,0,0");
+      "vicinity bridge cell.vicinity --robot arm.urdf --base 0,0,0.8,0,0,0\n"
+      "  vicinity bridge scene.yaml --share-field /cell --dds here.xml\n"
+      "  vicinity bridge copy.vicinity --follow-field /cell --dds there.xml --robot arm.urdf");
   auto& [app, options] = command;
   app.add_option("INPUT", options->input, "made by vicinity build, or a scene (.yaml, .yml)")
       ->required();
@@ -299,9 +302,17 @@ void add_bridge(CLI::App& parent, Run& run) {
                  "link moves the base")
       ->capture_default_str();
   app.add_option("--domain", options->domain, "ROS_DOMAIN_ID")->capture_default_str();
-  app.add_option("--namespace", options->name_space, "in front of every topic: /left");
+  app.add_option("--namespace", options->name_space,
+                 "in front of every topic but of transforms: /left");
   app.add_option("--dds", options->dds,
                  "Cyclone DDS configuration (XML); default: this machine alone");
+  auto* share = app.add_option(
+      "--share-field", options->share_field,
+      "give the field, and what becomes of it, to other machines under this name: /cell");
+  app.add_option("--follow-field", options->follow_field,
+                 "take the field that is shared under this name; INPUT is our copy of it, which "
+                 "need not be there yet")
+      ->excludes(share);
   app.add_option("--half-speed-drag", options->half_speed_drag,
                  "drag of the tool that halves the speed scale [N·s/m]")
       ->capture_default_str();

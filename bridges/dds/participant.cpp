@@ -36,7 +36,9 @@ using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 Qos qos_of(const Quality& quality, const std::string& type_hash) {
   Qos qos(dds_create_qos(), &dds_delete_qos);
   // As long as ROS 2 waits.
-  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+  dds_qset_reliability(qos.get(),
+                       quality.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+                       DDS_MSECS(100));
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, quality.depth);
   dds_qset_durability(qos.get(),
                       quality.latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
@@ -67,7 +69,7 @@ Participant::~Participant() {
 
 dds_entity_t Participant::endpoint(std::string_view topic, const ros2::Description& description,
                                    const Quality& quality, bool writes) {
-  const std::string ros_name = name_space_ + std::string(topic);
+  const std::string ros_name = (quality.named_alone ? "" : name_space_) + std::string(topic);
   const std::string name = ros2::topic::on_the_wire(ros_name);
   const Qos qos = qos_of(quality, ros2::type_hash(description));
   ddsi_sertype* type = new_cdr_type(ros2::dds_type_name(description.front().type));

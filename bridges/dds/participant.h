@@ -22,13 +22,16 @@ struct ParticipantOptions {
   /// Cyclone's configuration: XML, or file://. Empty: this machine alone (the loopback address, no
   /// multicast).
   std::string configuration;
-  std::string name_space;  ///< in front of every topic: "/left"
+  std::string name_space;  ///< in front of topics: "/left"
 };
 
-/// What a sender or receiver wants of the way between them. Reliable, newest kept, in all cases.
+/// What a sender or receiver wants of the way between them. The newest are kept in all cases.
 struct Quality {
-  int depth = 10;        ///< as many of the newest are kept
-  bool latched = false;  ///< transient local: who comes later gets the newest too
+  /// A receiver that is not takes from senders of both kinds, and waits for nothing that was lost.
+  bool reliable = true;
+  int depth = 10;            ///< as many of the newest are kept
+  bool latched = false;      ///< transient local: who comes later gets the newest too
+  bool named_alone = false;  ///< the namespace is not put in front of it
 };
 
 /// Errors: every function throws Error where DDS refuses.

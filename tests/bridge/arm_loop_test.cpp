@@ -48,7 +48,9 @@ class Wire : public testing::Test {
   Wire()
       : teleoperation_(place().robot, sample_body_points(place().robot, {}), place().field),
         intake_(place().robot, cli_test::small_arm_X_WB()),
-        loop_(std::make_unique<ArmLoop>(teleoperation_)) {}
+        loop_(std::make_unique<ArmLoop>(3)) {
+    loop_->feel(teleoperation_);
+  }
 
   static const Place& place() {
     static const Place made;
