@@ -36,7 +36,7 @@ for flag in "$@"; do
     --benchmarks) packages+=(libbenchmark-dev) ;;
     --peers) packages+=(libbenchmark-dev libnanovdb-dev libfcl-dev libcgal-dev liboctomap-dev
                         libdynamicedt3d-dev python3-scipy) ;;
-    --bridge) packages+=(cyclonedds-dev libfastrtps-dev libfastcdr-dev) ;;
+    --bridge) packages+=(cyclonedds-dev libfastrtps-dev libfastcdr-dev openssl) ;;
     --python) packages+=(pybind11-dev python3-dev python3-numpy python3-pip python3-venv python3-setuptools
                          python3-wheel mypy dpkg-dev file) ;;
     --viewer) command -v npm >/dev/null || packages+=(nodejs npm) ;;

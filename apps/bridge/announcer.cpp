@@ -64,7 +64,10 @@ void Announcer::announce(const Answer& answer) {
     said_.clear();
   }
   if (felt) find_scale(answer);
-  if (sample.heard == Heard::silence || sample.heard == Heard::nothing_yet) scale_ = 0;
+  if (sample.heard == Heard::silence || sample.heard == Heard::nothing_yet ||
+      sample.heard == Heard::no_field) {
+    scale_ = 0;
+  }
   const std::span<const double> q(last_q_.data(), static_cast<std::size_t>(last_q_.size()));
   const std::span<const double> torque(output.torque.data(),
                                        static_cast<std::size_t>(output.torque.size()));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -189,7 +190,7 @@ void tend(Source& source, FieldInUse& in_use, dds_entity_t diagnostics, const Sa
       } else {
         std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
       }
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
       say(std::string(error.what()) + "; the field stays as it is from now on");
       works = false;
     }

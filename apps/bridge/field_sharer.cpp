@@ -46,7 +46,7 @@ std::optional<ViscosityField> FieldSharer::step(double seconds) {
     if (checksum_of(field.image()) == manifest_.checksum) return {};
     share(std::move(field));
     return field_;
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {  // too little memory is no end either
     broken_ = true;
     say_(std::string(error.what()) + "; the field stays as it was");
   }

@@ -129,6 +129,15 @@ TEST(Bridge, RefusesWhatCannotBeUsed) {
   options.half_speed_drag = 0;
   EXPECT_THROW(bridge(options, out, err), std::exception);
   options.half_speed_drag = 1;
+  options.follow_field = "/cell";
+  options.input = "scene.yaml";
+  EXPECT_THROW(bridge(options, out, err), std::exception) << "no place for a copy";
+  options.follow_field.clear();
+  for (const char* name : {"cell", "/", "/a cell", "/cell/"}) {
+    options.share_field = name;
+    EXPECT_THROW(bridge(options, out, err), std::exception) << name;
+  }
+  options.share_field.clear();
   options.dds = "nowhere.xml";
   EXPECT_THROW(bridge(options, out, err), std::exception);
 }
