@@ -27,6 +27,7 @@ packages=(
 # What only some need:
 #   --benchmarks     the benchmarks
 #   --peers          the benchmarks, and what scripts/bench.sh measures us beside (150 MB)
+#   --bridge         what VICINITY_BRIDGE needs, and the second DDS that its tests talk to
 #   --python         what VICINITY_PYTHON and its tests need, and the tests of Debian packages
 #   --readers        the programs that our exports are for, which open them in tests (250 MB or more)
 #   --viewer         the viewer's page, which npm builds; without it vicinity serve has no page
@@ -37,12 +38,13 @@ for flag in "$@"; do
     --benchmarks) packages+=(libbenchmark-dev) ;;
     --peers) packages+=(libbenchmark-dev libnanovdb-dev libfcl-dev libcgal-dev liboctomap-dev
                         libdynamicedt3d-dev python3-scipy) ;;
+    --bridge) packages+=(cyclonedds-dev libfastrtps-dev libfastcdr-dev openssl) ;;
     --python) packages+=(pybind11-dev python3-dev python3-numpy python3-pip python3-venv python3-setuptools
                          python3-wheel mypy dpkg-dev file) ;;
     --readers) packages+=(python3-numpy python3-openvdb python3-vtk9) ;;
     --viewer) command -v npm >/dev/null || packages+=(nodejs npm) ;;
     --viewer-tests) command -v chromium >/dev/null || packages+=(chromium) ;;
-    *) echo "install_packages.sh: there is no $flag; --benchmarks, --peers, --python, --readers, --viewer, --viewer-tests" >&2; exit 2 ;;
+    *) echo "install_packages.sh: there is no $flag; --benchmarks, --peers, --bridge, --python, --readers, --viewer, --viewer-tests" >&2; exit 2 ;;
   esac
 done
 

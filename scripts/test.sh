@@ -9,13 +9,14 @@ set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 jobs=$(nproc)
 
-"$repository/scripts/install_packages.sh" --python --readers --viewer
+"$repository/scripts/install_packages.sh" --bridge --python --readers --viewer
 cd "$repository"
 
 for preset in release asan_ubsan; do
   echo "== $preset"
-  # Python itself is not built for the sanitizers.
-  cmake --preset "$preset" -DVICINITY_PYTHON="$([[ $preset == release ]] && echo ON || echo OFF)"
+  # Python and DDS themselves are not built for the sanitizers.
+  plain=$([[ $preset == release ]] && echo ON || echo OFF)
+  cmake --preset "$preset" -DVICINITY_PYTHON="$plain" -DVICINITY_BRIDGE="$plain"
   cmake --build --preset "$preset"
   ctest --preset "$preset" -j "$jobs"
 done

@@ -13,6 +13,9 @@
 #include <string>
 #include <vector>
 
+#ifdef VICINITY_BRIDGE
+#include "bridge.h"
+#endif
 #include "commands/bench_tick.h"
 #include "commands/build.h"
 #include "commands/check.h"
@@ -52,6 +55,7 @@ constexpr const char* welcome =
   vicinity replay F ...         a joint log of an arm: what its operator would feel
   vicinity slice F ...          a picture of the layers
   vicinity serve F              see the layers and drive an arm through them, in a browser
+  vicinity bridge F ...         feel for an arm in ROS 2, or on two machines, over DDS
   vicinity export F -o ...      for numpy, ParaView, Blender
   vicinity simulate ...         operators in simulation: does any of it help?
   vicinity reproduce -o DIR     the paper's figures and tables, ours beside theirs
@@ -279,6 +283,47 @@ void add_serve(CLI::App& parent, Run& run) {
 }
 #endif
 
+#ifdef VICINITY_BRIDGE
+void add_bridge(CLI::App& parent, Run& run) {
+  Command<bridge::BridgeOptions> command(
+      parent, "bridge", "Feel for an arm in ROS 2: joint states in over DDS, wrench and reason out",
+      "vicinity bridge cell.vicinity --robot arm.urdf --base 0,0,0.8,0,0,0\n"
+      "  vicinity bridge scene.yaml --share-field /cell --dds here.xml\n"
+      "  vicinity bridge copy.vicinity --follow-field /cell --dds there.xml --robot arm.urdf");
+  auto& [app, options] = command;
+  app.add_option("INPUT", options->input, "made by vicinity build, or a scene (.yaml, .yml)")
+      ->required();
+  add_arm(app, options->arm);
+  app.add_option("--points-per-m2", options->arm.points_per_m2,
+                 "density of body points; default: 2000");
+  add_feel(app, options->arm);
+  app.add_option("--world", options->world,
+                 "the frame that the workspace is called; a transform from it to the robot's base "
+                 "link moves the base")
+      ->capture_default_str();
+  app.add_option("--domain", options->domain, "ROS_DOMAIN_ID")->capture_default_str();
+  app.add_option("--namespace", options->name_space,
+                 "in front of every topic but of transforms: /left");
+  app.add_option("--dds", options->dds,
+                 "Cyclone DDS configuration (XML); default: this machine alone");
+  auto* share = app.add_option(
+      "--share-field", options->share_field,
+      "give the field, and what becomes of it, to other machines under this name: /cell");
+  app.add_option("--follow-field", options->follow_field,
+                 "take the field that is shared under this name; INPUT is our copy of it, which "
+                 "need not be there yet")
+      ->excludes(share);
+  app.add_option("--half-speed-drag", options->half_speed_drag,
+                 "drag of the tool that halves the speed scale [N·s/m]")
+      ->capture_default_str();
+  app.add_option("--record", options->recording, "what was felt, while it is: .mcap");
+  app.add_option("--seconds", options->seconds, "end after so long; default: Ctrl-C")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--json", options->json, "the summary, for programs");
+  command.runs(bridge::bridge, run);
+}
+#endif
+
 void add_slice(CLI::App& parent, Run& run) {
   Command<SliceOptions> command(parent, "slice", "Draw the layers in a plane, as a picture",
                                 "vicinity slice cell.vicinity --z 0.04 -o s.png");
@@ -367,6 +412,15 @@ void add_reproduce(CLI::App& parent, Run& run) {
   command.runs(reproduce, run);
 }
 
+#ifndef VICINITY_BRIDGE
+void refuse_bridge(int argc, char** argv) {
+  if (argc < 2 || std::string_view(argv[1]) != "bridge") return;
+  throw Error({.where = "bridge",
+               .what = "this vicinity was built without the bridge to ROS 2",
+               .hint = "building it with -DVICINITY_BRIDGE=ON"});
+}
+#endif
+
 #ifndef VICINITY_VIEWER
 void refuse_serve(int argc, char** argv) {
   if (argc < 2 || std::string_view(argv[1]) != "serve") return;
@@ -435,6 +489,11 @@ int run(int argc, char** argv) {
   add_serve(app, chosen);
 #else
   refuse_serve(argc, argv);
+#endif
+#ifdef VICINITY_BRIDGE
+  add_bridge(app, chosen);
+#else
+  refuse_bridge(argc, argv);
 #endif
   app.footer("Example:\n  vicinity demo");
 

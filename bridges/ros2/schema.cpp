@@ -80,6 +80,8 @@ std::string_view Describer::plain_type(int type_id) {
       return "int32";
     case 7:
       return "uint32";
+    case 9:
+      return "uint64";
     case 10:
       return "float32";
     case 11:

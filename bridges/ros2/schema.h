@@ -53,6 +53,7 @@ class Describer {
     if constexpr (std::is_same_v<T, std::uint8_t>) return 3;
     if constexpr (std::is_same_v<T, std::int32_t>) return 6;
     if constexpr (std::is_same_v<T, std::uint32_t>) return 7;
+    if constexpr (std::is_same_v<T, std::uint64_t>) return 9;
     if constexpr (std::is_same_v<T, float>) return 10;
     if constexpr (std::is_same_v<T, double>) return 11;
     if constexpr (std::is_same_v<T, bool>) return 15;

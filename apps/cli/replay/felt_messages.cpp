@@ -25,12 +25,17 @@ std::uint64_t nanoseconds_of(const ros2::Time& stamp) {
   return static_cast<std::uint64_t>(stamp.sec) * ns_per_s + stamp.nanosec;
 }
 
-FeltMessages::FeltMessages(const RobotModel& robot, const ViscosityField& field, int tool_link)
+std::vector<std::string> object_names(const ViscosityField& field) {
+  std::vector<std::string> names;
+  for (const FieldObject& object : field.objects()) names.push_back(object.name);
+  return names;
+}
+
+FeltMessages::FeltMessages(const RobotModel& robot, int tool_link)
     : kinematics_(robot),
       tool_link_(tool_link < 0 ? robot.links.size() - 1 : static_cast<std::size_t>(tool_link)),
       at_rest_(robot.coordinates.size()) {
   for (const Link& link : robot.links) links_.push_back(link.name);
-  for (const FieldObject& object : field.objects()) objects_.push_back(object.name);
   for (std::size_t c = 0; c < robot.coordinates.size(); ++c) {
     states_.name.push_back(joint_name(robot, c));
   }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ros2/messages.h"
@@ -20,11 +21,17 @@ namespace vicinity::cli {
 ros2::Time stamp_of(std::uint64_t time_ns);
 std::uint64_t nanoseconds_of(const ros2::Time& stamp);
 
-/// For one arm in one field. Messages are filled in place, so that their memory is used again.
+/// Names of a field's objects, in their order.
+std::vector<std::string> object_names(const ViscosityField& field);
+
+/// For one arm. Messages are filled in place, so that their memory is used again.
 class FeltMessages {
  public:
   /// @param tool_link  as in TeleoperationOptions; -1: the last one
-  FeltMessages(const RobotModel& robot, const ViscosityField& field, int tool_link);
+  FeltMessages(const RobotModel& robot, int tool_link);
+
+  /// Names of the objects that reasons are about from now on.
+  void name_objects(std::vector<std::string> objects) { objects_ = std::move(objects); }
 
   /// Positions that the tick was given. @param q  shape (joints,) [rad or m]
   const ros2::JointState& joint_states(const ros2::Time& stamp, std::span<const double> q);

@@ -16,16 +16,18 @@
 
 namespace vicinity::cli {
 
-McapRecording::McapRecording(mcap::Sink sink, const RobotModel& robot, const ViscosityField& field,
-                             int tool_link)
+McapRecording::McapRecording(mcap::Sink sink, const RobotModel& robot,
+                             std::vector<std::string> objects, int tool_link)
     : file_(std::move(sink), "ros2", "vicinity"),
-      messages_(robot, field, tool_link),
+      messages_(robot, tool_link),
       states_(channel<ros2::JointState>(ros2::topic::joint_states)),
       efforts_(channel<ros2::JointState>(ros2::topic::joint_efforts)),
       wrench_(channel<ros2::WrenchStamped>(ros2::topic::wrench)),
       force_(channel<ros2::Float64>(ros2::topic::master_force)),
       distance_(channel<ros2::Float64>(ros2::topic::reason_distance)),
-      diagnostics_(channel<ros2::DiagnosticArray>(ros2::topic::diagnostics)) {}
+      diagnostics_(channel<ros2::DiagnosticArray>(ros2::topic::diagnostics)) {
+  messages_.name_objects(std::move(objects));
+}
 
 void McapRecording::add(std::uint64_t time_ns, std::span<const double> q,
                         std::span<const double> torque, const Wrench& tool_W, double master_force,

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mcap/writer.h"
@@ -21,7 +22,8 @@ namespace vicinity::cli {
 class McapRecording {
  public:
   /// @param sink  as mcap::Writer
-  McapRecording(mcap::Sink sink, const RobotModel& robot, const ViscosityField& field,
+  /// @param objects  names of the field's objects
+  McapRecording(mcap::Sink sink, const RobotModel& robot, std::vector<std::string> objects,
                 int tool_link);
 
   /// @param time_ns        as stamp_of()
@@ -30,6 +32,12 @@ class McapRecording {
   void add(std::uint64_t time_ns, std::span<const double> q, std::span<const double> torque,
            const Wrench& tool_W, double master_force, const Reason& reason, const Pose& X_WB,
            std::string_view status, std::byte level);
+
+  /// Another field from now on.
+  void name_objects(std::vector<std::string> objects) {
+    messages_.name_objects(std::move(objects));
+    said_.clear();
+  }
 
   mcap::Writer& file() noexcept { return file_; }
 

@@ -112,8 +112,8 @@ class Lines {
 
 void write_mcap(const Recording& recording, const Arm& arm, const ViscosityField& field,
                 double t_start, FreshFile& file) {
-  McapRecording out([&](std::string_view bytes) { file.write(bytes); }, arm.robot, field,
-                    arm.teleoperation.tool_link);
+  McapRecording out([&](std::string_view bytes) { file.write(bytes); }, arm.robot,
+                    object_names(field), arm.teleoperation.tool_link);
   for (std::size_t k = 0; k < recording.ticks().size(); ++k) {
     const TickRecord& tick = recording.ticks()[k];
     out.add(nanoseconds(t_start + tick.time_s), recording.position(k), recording.torque(k),
