@@ -104,9 +104,10 @@ std::int64_t since_1970_ns() {
 
 struct Readers {
   explicit Readers(dds::Participant& participant)
-      // A state that has to be sent again comes too late: the next is better.
-      : states(
-            participant.reader<ros2::JointState>(ros2::topic::joint_states, {.reliable = false})),
+      // A state that has to be sent again comes too late: the next is better. Those that come
+      // while this machine is busy elsewhere are kept, a tenth of a second of them.
+      : states(participant.reader<ros2::JointState>(ros2::topic::joint_states,
+                                                    {.reliable = false, .depth = 100})),
         tf(participant.reader<ros2::TFMessage>(ros2::topic::tf, {.named_alone = true})),
         tf_static(participant.reader<ros2::TFMessage>(
             ros2::topic::tf_static, {.depth = 100, .latched = true, .named_alone = true})),
