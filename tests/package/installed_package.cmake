@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Installs this build into a folder of its own, builds the examples against it from another folder,
-# and runs them. Given: BUILD (this build), EXAMPLES (their source), SCRATCH (an own folder), FLAGS.
+# and runs them. Given: BUILD (this build), EXAMPLES (their source), SCRATCH (an own folder).
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 function(build_example NAME)
   run(${CMAKE_COMMAND} -S ${EXAMPLES}/${NAME} -B ${SCRATCH}/${NAME} -G Ninja
-      -DCMAKE_PREFIX_PATH=${SCRATCH}/installed -DCMAKE_CXX_FLAGS=${FLAGS})
+      -DCMAKE_PREFIX_PATH=${SCRATCH}/installed)
   run(${CMAKE_COMMAND} --build ${SCRATCH}/${NAME})
 endfunction()
 

@@ -17,7 +17,7 @@ import sys
 import tempfile
 
 SKIPPED = 77
-MISSING = "skipped: {}; scripts/install_packages.sh --readers installs it"
+MISSING = "skipped: {}; scripts/install_packages.sh --readers --vtk installs it"
 try:
     import numpy as np
 except ImportError as missing:
