@@ -298,9 +298,11 @@ async function cut(axis: Axis, where: number): Promise<void> {
 // Once a frame: what has come since the last one, and what the hands do.
 let last = performance.now();
 let panelsAt = 0;
+let usualStep = 1 / 60; // [s]
 function step(now: number): void {
   const seconds = (now - last) / 1000;
   last = now;
+  usualStep += 0.2 * (Math.min(seconds, 0.5) - usualStep);
   jog.step(seconds);
   replay.player.step(seconds);
   const snapshot = fresh;
@@ -337,13 +339,15 @@ function showSnapshot(snapshot: Snapshot, now: number): void {
   handle.group.visible = !replay.hidesLiveArm;
   handle.move(tool, leader.isLeading ? leader.place : new Vector3().fromArray(snapshot.pulledTo));
   if (leader.isLeading) stage.draw();
-  if (now - panelsAt > 66) {
+  // Where the processor draws, words and charts cost more than the view: they are drawn less often.
+  const pause = 4000 * usualStep;
+  if (now - panelsAt > pause) {
     panelsAt = now;
     drive.update(snapshot);
     const { field, robot } = workplace.hello;
     if (!replay.charts) sayReason(reasonLine(snapshot.reason, field, robot));
   }
-  if (!replay.charts) charts.showLive(snapshot, now, stage.frameTimes.at(-1) ?? 0);
+  if (!replay.charts) charts.showLive(snapshot, now, stage.frameTimes.at(-1) ?? 0, pause);
 }
 
 function hold(): void {

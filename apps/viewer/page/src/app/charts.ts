@@ -28,8 +28,9 @@ export class Charts {
   }
 
   /** Once a frame; draws ten times a second. */
-  showLive(snapshot: Snapshot, now: number, frameTime: number): void {
-    if (now - this.drawnAt < period_ms) return;
+  /** @param pause  leaves the view so much time between two drawings [ms] */
+  showLive(snapshot: Snapshot, now: number, frameTime: number, pause: number): void {
+    if (now - this.drawnAt < Math.max(period_ms, pause)) return;
     this.drawnAt = now;
     const latest = this.record.latest;
     this.chart.setCursor(null);

@@ -57,6 +57,8 @@ export class Stage {
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: !isDrawnByProcessor(), alpha: true });
+    // Asking how each shader compiled waits for it; that they do is tested before anybody opens the page.
+    this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
     this.renderer.setClearAlpha(0);
     this.renderer.localClippingEnabled = true; // objects are cut away before the slice
     this.scene.add(new HemisphereLight(0xffffff, 0x8c97a5, 1.5), new AmbientLight(0xffffff, 0.35));
@@ -70,7 +72,8 @@ export class Stage {
     this.orbit.addEventListener("change", () => this.draw());
     this.look("iso");
 
-    new ResizeObserver(() => this.resize()).observe(canvas); // which calls it at once
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.resize();
   }
 
   /** Draws nothing until all has come, or for a moment at most. */

@@ -6,7 +6,7 @@
 // names the field, VICINITY_RANKS how many of its shells are shown (default 0; `all`).
 import { statSync } from "node:fs";
 import { expect, test } from "vitest";
-import { openPage, Server, theBrowser } from "../browser/viewer";
+import { openPage, Server, theBrowser, type OpenPage } from "../browser/viewer";
 
 const field = process.env.VICINITY_FIELD ?? "";
 const shells = process.env.VICINITY_RANKS ?? "";
@@ -16,11 +16,21 @@ test("a large field opens and is orbited; how fast is printed", async () => {
   await (await theBrowser()).newContext(); // it has started before
   const served = performance.now();
   const server = await Server.start([field]);
-  const begun = performance.now();
-  const { page, complaints } = await openPage(`${server.address}?shells=${shells}`, { width: 1366, height: 768 });
-  const ended = performance.now();
   const seconds = (from: number, to: number): string => ((to - from) / 1000).toFixed(2);
-  const marks = await page.evaluate(() => performance.getEntriesByType("mark").map(({ name, startTime }) => `${name} ${(startTime / 1000).toFixed(2)} s`));
+  console.log(`${megabytes.toFixed(0)} MB: served after ${seconds(served, performance.now())} s`);
+  // The first page also waits for the browser to make its shaders, which it then keeps.
+  const open = async (which: string): Promise<OpenPage> => {
+    const begun = performance.now();
+    const opened = await openPage(`${server.address}?shells=${shells}`, { width: 1366, height: 768 });
+    const ended = performance.now();
+    const marks = await opened.page.evaluate(() =>
+      performance.getEntriesByType("mark").map(({ name, startTime }) => `${name} ${(startTime / 1000).toFixed(2)} s`),
+    );
+    console.log(`${which} page: all drawn ${seconds(begun, ended)} s later (${marks.join(", ")})`);
+    return opened;
+  };
+  await (await open("first")).page.context().close();
+  const { page, complaints } = await open("next");
 
   const canvas = (await page.locator("#canvas").boundingBox())!;
   await page.mouse.move(canvas.x + 0.2 * canvas.width, canvas.y + 0.3 * canvas.height);
@@ -31,10 +41,7 @@ test("a large field opens and is orbited; how fast is printed", async () => {
   await page.mouse.up();
   const sorted = (await page.evaluate(() => window.vicinity.frameTimes())).sort((a, b) => a - b);
   const at = (share: number): string => (sorted[Math.floor(share * (sorted.length - 1))] ?? NaN).toFixed(1);
-  console.log(
-    `${megabytes.toFixed(0)} MB: served after ${seconds(served, begun)} s, all drawn ${seconds(begun, ended)} s later ` +
-      `(${marks.join(", ")}); orbited in ${sorted.length} frames of ${at(0.5)} ms (median), ${at(0.99)} ms (p99)`,
-  );
+  console.log(`orbited in ${sorted.length} frames of ${at(0.5)} ms (median), ${at(0.99)} ms (p99)`);
   expect(sorted.length).toBeGreaterThan(0);
   expect(complaints).toEqual([]);
   await page.context().close();
