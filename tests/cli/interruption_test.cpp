@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <time.h>
 
 #include <random>
@@ -60,6 +61,25 @@ TEST_P(InterruptedBuild, LeavesAWholeFieldOrNone) {
 
 INSTANTIATE_TEST_SUITE_P(, InterruptedBuild, testing::Values(SIGINT, SIGTERM, SIGKILL),
                          [](const auto& which) { return std::string(sigabbrev_np(which.param)); });
+
+// A sanitizer takes more addresses for itself than such a limit leaves.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST(BuildWithoutMemory, SaysSoInASentenceAndLeavesNothing) {
+  const Folder folder;
+  std::string large = slow_scene;
+  large.replace(large.find("0.004"), 5, "0.001");
+  folder.write("scene.yaml", large);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  const rlimit small = {400'000'000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);  // children take it over
+  const Answer answer = folder.run({"build", "scene.yaml", "-o", "f.vicinity"});
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_THAT(answer.err, testing::HasSubstr("too little memory for that; try a larger"));
+  EXPECT_THAT(folder.files(), testing::ElementsAre("scene.yaml"));
+}
+#endif
 
 TEST(InterruptedExport, LeavesNothing) {
   const Folder folder;
