@@ -56,7 +56,7 @@ struct Limits {
   std::uint64_t triangles;  // a small file may place one mesh many times, but not without end
 
   explicit Limits(std::size_t file_size)
-      : cpu_seconds(2 + (file_size >> 20)),
+      : cpu_seconds(8 + (file_size >> 20)),  // a slow machine that others share, and its sanitizers
         bytes((std::size_t{512} << 20) + 64 * file_size),
         triangles(1'000'000 + 8 * file_size) {}
 
