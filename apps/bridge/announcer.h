@@ -35,8 +35,6 @@ class Announcer {
   const std::map<std::string, std::uint64_t>& statuses() const noexcept { return statuses_; }
   /// Messages that DDS did not take.
   std::uint64_t refused() const noexcept { return refused_; }
-  /// Of the last answer that was heard.
-  double last_scale() const noexcept { return scale_; }
 
  private:
   template <class Message>

@@ -52,7 +52,8 @@ constexpr std::size_t batch_size = 512;
 constexpr std::size_t longest_complaint = 300;
 
 // A child that is split off while another thread holds a lock of the allocator waits for it for
-// ever. The C library's lets that not happen, a sanitizer's does: there, another moment is tried.
+// ever. The C library guards against that. Under sanitizers readers were seen that never got to
+// work, in a process of many threads only: there, another moment is tried.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr int most_readers = 3;
 #else

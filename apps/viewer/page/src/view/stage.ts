@@ -30,7 +30,7 @@ const directions: Record<ViewDirection, Vector3> = {
   top: new Vector3(0, -0.001, 1), // not straight down: up would have no direction
 };
 
-/** Whether the processor draws for want of a graphics card: smooth edges then cost half of each frame. */
+/** Whether the processor draws for want of a graphics card: smooth edges then cost more than they show. */
 function isDrawnByProcessor(): boolean {
   const trial = document.createElement("canvas").getContext("webgl2");
   const names = trial?.getExtension("WEBGL_debug_renderer_info");
