@@ -44,6 +44,8 @@ export class Connection {
   private readonly listeners = new Map<number, ((message: Message) => void)[]>();
   private lastId = 0;
   private pause = 500; // [ms]
+  private state: ConnectionState = "connecting";
+  private held: unknown[] | null = []; // what has come before anybody listens
 
   constructor(
     private readonly address: string,
@@ -51,17 +53,26 @@ export class Connection {
     private readonly onTrouble: (sentence: string) => void,
   ) {}
 
+  /** Connects. Nothing is told before `listen`. */
   open(): void {
-    this.onState("connecting");
+    this.enter("connecting");
     const socket = new WebSocket(this.address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     socket.addEventListener("open", () => {
       this.pause = 500;
-      this.onState("open");
+      this.enter("open");
     });
     socket.addEventListener("message", (event: MessageEvent<unknown>) => this.receive(event.data));
     socket.addEventListener("close", () => this.lose());
+  }
+
+  /** From now on, and first of all what has come before: once all listeners are in place. */
+  listen(): void {
+    const held = this.held ?? [];
+    this.held = null;
+    this.onState(this.state);
+    for (const data of held) this.receive(data);
   }
 
   /** Calls `listen` for every message of a type that answers no command. */
@@ -115,7 +126,16 @@ export class Connection {
     }
   }
 
+  private enter(state: ConnectionState): void {
+    this.state = state;
+    if (!this.held) this.onState(state);
+  }
+
   private receive(data: unknown): void {
+    if (this.held) {
+      this.held.push(data);
+      return;
+    }
     try {
       if (!(data instanceof ArrayBuffer)) throw new Error("the server sent a text message");
       this.deliver(new Message(data));
@@ -140,7 +160,7 @@ export class Connection {
   }
 
   private lose(): void {
-    this.onState("lost");
+    this.enter("lost");
     const unanswered = [...this.waiting.values(), ...this.backlog.map(({ waiting }) => waiting)];
     this.waiting.clear();
     this.backlog = [];

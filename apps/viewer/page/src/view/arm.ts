@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // An arm: the meshes of its links, each at a pose that somebody else knows.
-import { Color, Group, Mesh, MeshLambertMaterial } from "three";
+import { Group, Mesh } from "three";
 import type { Robot } from "../protocol/hello";
 import type { MeshAnswer } from "../protocol/shapes";
+import { litMaterial } from "./material";
 import { meshGeometry } from "./mesh_geometry";
 
 export class Arm {
   readonly group = new Group();
   private readonly links: Group[];
-  private readonly material = new MeshLambertMaterial();
+  private readonly material = litMaterial();
 
   constructor(robot: Robot) {
     this.links = robot.links.map((link) => {
@@ -37,7 +38,7 @@ export class Arm {
   }
 
   setColour(colour: string): void {
-    this.material.color = new Color(colour);
+    this.material.setColour(colour);
   }
 
   dispose(): void {

@@ -5,17 +5,15 @@
 // the gizmo that moves the chosen one.
 import {
   BufferGeometry,
-  Color,
-  DoubleSide,
   Group,
   Matrix4,
   Mesh,
-  MeshLambertMaterial,
   Quaternion,
   Vector3,
 } from "three";
 import { TransformControls } from "three/addons/controls/TransformControls.js";
 import type { Placement } from "../scene/draft";
+import { litMaterial } from "./material";
 import type { Stage } from "./stage";
 
 export function matrixOf({ xyz, quaternion, scale }: Placement, metres = 1): Matrix4 {
@@ -25,34 +23,26 @@ export function matrixOf({ xyz, quaternion, scale }: Placement, metres = 1): Mat
 
 export class DraftPreview {
   readonly group = new Group();
-  private readonly gizmo: TransformControls;
-  private readonly material = new MeshLambertMaterial({ side: DoubleSide, transparent: true, opacity: 0.75 });
+  private gizmo: TransformControls | null = null; // made when it is first needed: it has many parts
+  private readonly material = litMaterial({ opacity: 0.75 });
   private readonly frame = new Group(); // what the gizmo moves: the pose, without unit and scale
   private readonly meshes = new Map<object, Mesh>();
-  private readonly helper;
 
   /** @param onMove the gizmo has moved the chosen object */
   constructor(
     private readonly stage: Stage,
-    canvas: HTMLCanvasElement,
-    onMove: (xyz: Vector3, turn: Quaternion) => void,
+    private readonly canvas: HTMLCanvasElement,
+    private readonly onMove: (xyz: Vector3, turn: Quaternion) => void,
   ) {
-    this.gizmo = new TransformControls(stage.camera, canvas);
-    this.gizmo.setSize(0.8);
-    this.gizmo.addEventListener("change", () => stage.draw());
-    this.gizmo.addEventListener("dragging-changed", ({ value }) => (stage.orbit.enabled = !value));
-    this.gizmo.addEventListener("objectChange", () => onMove(this.frame.position, this.frame.quaternion));
-    this.helper = this.gizmo.getHelper();
-    this.group.add(this.frame, this.helper);
-    this.helper.visible = false;
+    this.group.add(this.frame);
   }
 
   get isDragging(): boolean {
-    return this.gizmo.dragging;
+    return this.gizmo?.dragging ?? false;
   }
 
   setColour(colour: string): void {
-    this.material.color = new Color(colour);
+    this.material.setColour(colour);
   }
 
   /** Shows an object at a place. @param geometry in `metres` per unit */
@@ -84,15 +74,25 @@ export class DraftPreview {
   /** Puts the gizmo on a pose, or away. */
   hold(placement: Placement | null, mode: "translate" | "rotate" = "translate"): void {
     if (!placement) {
-      this.gizmo.detach();
-      this.helper.visible = false;
+      this.gizmo?.detach(); // which hides it
     } else {
       this.frame.position.set(...placement.xyz);
       this.frame.quaternion.set(...placement.quaternion);
+      this.gizmo ??= this.makeGizmo();
       this.gizmo.setMode(mode);
       this.gizmo.attach(this.frame);
-      this.helper.visible = true;
     }
     this.stage.draw();
+  }
+
+  private makeGizmo(): TransformControls {
+    const { stage } = this;
+    const gizmo = new TransformControls(stage.camera, this.canvas);
+    gizmo.setSize(0.8);
+    gizmo.addEventListener("change", () => stage.draw());
+    gizmo.addEventListener("dragging-changed", ({ value }) => (stage.orbit.enabled = !value));
+    gizmo.addEventListener("objectChange", () => this.onMove(this.frame.position, this.frame.quaternion));
+    this.group.add(gizmo.getHelper());
+    return gizmo;
   }
 }

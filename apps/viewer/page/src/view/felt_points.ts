@@ -8,7 +8,6 @@ import {
   BufferGeometry,
   Color,
   Group,
-  LineBasicMaterial,
   LineSegments,
   Points,
   ShaderMaterial,
@@ -17,6 +16,7 @@ import {
 import { viscosityColour } from "../colour/rank_palette";
 import type { BodyPoints, Snapshot } from "../protocol/snapshot";
 import type { Look } from "./look";
+import { flatMaterial, type PlainMaterial } from "./material";
 import { placePoints } from "./rigid";
 
 const vertexShader = /* glsl */ `
@@ -47,6 +47,10 @@ const fragmentShader = /* glsl */ `
     #include <colorspace_fragment>
   }`;
 
+export function pointMaterial(pixelRatio: number): ShaderMaterial {
+  return new ShaderMaterial({ vertexShader, fragmentShader, uniforms: { pixels: { value: pixelRatio } } });
+}
+
 export class FeltPoints {
   readonly group = new Group();
   private readonly place: Float32Array<ArrayBuffer>;
@@ -54,7 +58,7 @@ export class FeltPoints {
   private readonly felt: Float32Array<ArrayBuffer>;
   private readonly ends: Float32Array<ArrayBuffer>;
   private readonly dots: Points<BufferGeometry, ShaderMaterial>;
-  private readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
+  private readonly lines: LineSegments<BufferGeometry, PlainMaterial>;
   private resting = new Color();
 
   constructor(
@@ -70,15 +74,10 @@ export class FeltPoints {
     geometry.setAttribute("position", new BufferAttribute(this.place, 3));
     geometry.setAttribute("colour", new BufferAttribute(this.colour, 3));
     geometry.setAttribute("felt", new BufferAttribute(this.felt, 1));
-    const material = new ShaderMaterial({
-      vertexShader,
-      fragmentShader,
-      uniforms: { pixels: { value: pixelRatio } },
-    });
-    this.dots = new Points(geometry, material);
+    this.dots = new Points(geometry, pointMaterial(pixelRatio));
     const lines = new BufferGeometry();
     lines.setAttribute("position", new BufferAttribute(this.ends, 3));
-    this.lines = new LineSegments(lines, new LineBasicMaterial());
+    this.lines = new LineSegments(lines, flatMaterial());
     this.dots.frustumCulled = this.lines.frustumCulled = false; // their bounds change every frame
     this.group.add(this.dots, this.lines);
   }
@@ -92,7 +91,7 @@ export class FeltPoints {
 
   setLook(look: Look): void {
     this.resting = new Color(look.restingPoint);
-    this.lines.material.color = new Color(look.drag);
+    this.lines.material.setColour(look.drag);
   }
 
   /** @param largest viscosity at the dark end of the scale; @param metresPerNewton of the lines */

@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // An arrow from the tool along the force of all drag, solid so that it is seen from afar.
-import { Color, ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Vector3 } from "three";
+import { ConeGeometry, CylinderGeometry, Group, Mesh, Vector3 } from "three";
+import { flatMaterial, withoutNormals } from "./material";
 
 const up = new Vector3(0, 1, 0);
 
 export class ForceArrow {
   readonly group = new Group();
-  private readonly material = new MeshBasicMaterial({ depthTest: false, transparent: true });
-  private readonly shaft = new Mesh(new CylinderGeometry(1, 1, 1, 12), this.material);
-  private readonly head = new Mesh(new ConeGeometry(1, 1, 16), this.material);
+  private readonly material = flatMaterial({ depthTest: false });
+  private readonly shaft = new Mesh(withoutNormals(new CylinderGeometry(1, 1, 1, 12)), this.material);
+  private readonly head = new Mesh(withoutNormals(new ConeGeometry(1, 1, 16)), this.material);
 
   /** @param thickness of the shaft [m] */
   constructor(private readonly thickness: number) {
@@ -20,7 +21,7 @@ export class ForceArrow {
   }
 
   setColour(colour: string): void {
-    this.material.color = new Color(colour);
+    this.material.setColour(colour);
   }
 
   /** @param along the arrow, from `from` [m]; a very short one is not drawn */

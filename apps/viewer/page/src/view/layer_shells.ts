@@ -11,13 +11,13 @@ import {
   IntType,
   Mesh,
   Vector3,
-  type Plane,
   type ShaderMaterial,
 } from "three";
 import { rankColour } from "../colour/rank_palette";
 import type { Field } from "../protocol/hello";
 import type { ShellPart } from "../protocol/shapes";
 import { firstQuadHit, type QuadHit, type Ray } from "./quad";
+import type { Cut } from "./material";
 import { shellMaterial, type HiddenObjects } from "./shell_material";
 
 interface Shell {
@@ -56,7 +56,7 @@ export class LayerShells {
   constructor(
     private readonly field: Field,
     private readonly hidden: HiddenObjects,
-    private readonly clip: Plane[],
+    private readonly cut: Cut,
   ) {}
 
   has(rank: number): boolean {
@@ -73,7 +73,7 @@ export class LayerShells {
       origin: new Vector3(...this.field.origin),
       cell,
       hidden: this.hidden,
-      clip: this.clip,
+      cut: this.cut,
     };
     const colour = shellMaterial(look, false);
     shell.colours.push(colour);

@@ -8,18 +8,18 @@ import {
   Color,
   Group,
   Line,
-  LineBasicMaterial,
   Points,
   PointsMaterial,
   Vector3,
   type Camera,
 } from "three";
+import { flatMaterial } from "./material";
 
 export class MeasureLine {
   readonly group = new Group();
   private ends: Vector3[] = [];
   private readonly geometry = new BufferGeometry();
-  private readonly line = new LineBasicMaterial({ depthTest: false, transparent: true });
+  private readonly line = flatMaterial({ depthTest: false });
   private readonly dot = new PointsMaterial({ size: 7, sizeAttenuation: false, depthTest: false, transparent: true });
 
   constructor() {
@@ -34,7 +34,8 @@ export class MeasureLine {
   }
 
   setColour(colour: string): void {
-    this.line.color = this.dot.color = new Color(colour);
+    this.line.setColour(colour);
+    this.dot.color = new Color(colour);
   }
 
   /** A third point begins a new line. */
@@ -67,5 +68,6 @@ export class MeasureLine {
     this.ends.forEach((end, n) => places.setXYZ(n, end.x, end.y, end.z));
     places.needsUpdate = true;
     this.geometry.setDrawRange(0, this.ends.length);
+    this.group.visible = this.ends.length > 0;
   }
 }

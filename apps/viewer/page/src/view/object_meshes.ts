@@ -4,32 +4,27 @@
 // The things in the workplace, as their meshes show them.
 import {
   Box3,
-  Color,
-  DoubleSide,
   Group,
-  LineBasicMaterial,
   LineSegments,
   Mesh,
-  MeshLambertMaterial,
-  type Plane,
   type Raycaster,
 } from "three";
 import type { MeshAnswer } from "../protocol/shapes";
 import { edgesOf, meshGeometry } from "./mesh_geometry";
 import type { Look } from "./look";
+import { flatMaterial, litMaterial, type Cut, type PlainMaterial } from "./material";
 
 export class ObjectMeshes {
   readonly group = new Group();
   private readonly meshes = new Map<number, Mesh>();
-  private readonly surface: MeshLambertMaterial;
-  private readonly chosenSurface: MeshLambertMaterial;
-  private readonly line: LineBasicMaterial;
+  private readonly surface: PlainMaterial;
+  private readonly chosenSurface: PlainMaterial;
+  private readonly line: PlainMaterial;
 
-  constructor(clip: Plane[]) {
-    const common = { side: DoubleSide, clippingPlanes: clip } as const;
-    this.surface = new MeshLambertMaterial(common);
-    this.chosenSurface = new MeshLambertMaterial(common);
-    this.line = new LineBasicMaterial({ transparent: true, opacity: 0.5, clippingPlanes: clip });
+  constructor(cut: Cut) {
+    this.surface = litMaterial({ cut });
+    this.chosenSurface = litMaterial({ cut });
+    this.line = flatMaterial({ opacity: 0.5, cut });
   }
 
   add(answer: MeshAnswer): void {
@@ -63,9 +58,9 @@ export class ObjectMeshes {
   }
 
   setLook(look: Look): void {
-    this.surface.color = new Color(look.object);
-    this.chosenSurface.color = new Color(look.accent);
-    this.line.color = new Color(look.edge);
+    this.surface.setColour(look.object);
+    this.chosenSurface.setColour(look.accent);
+    this.line.setColour(look.edge);
   }
 
   /** The nearest shown object on a ray for which `counts` holds. */

@@ -11,9 +11,9 @@ import {
   ShaderMaterial,
   SRGBColorSpace,
   Vector3,
-  type Plane,
 } from "three";
 import type { Colour } from "../colour/rank_palette";
+import { cutFragment, cutVertex, type Cut } from "./material";
 
 const vertexShader = /* glsl */ `
   attribute uvec4 quad;
@@ -21,12 +21,12 @@ const vertexShader = /* glsl */ `
   uniform float cell;
   uniform sampler2D hidden;
   varying float vLight;
-  #include <clipping_planes_pars_vertex>
+  ${cutVertex}
 
   void main() {
     // Corners go round the face: 0 (0,0), 1 (1,0), 2 (1,1), 3 (0,1).
-    int place = gl_VertexID & 3;
-    float u = place == 1 || place == 2 ? 1.0 : 0.0, v = place >= 2 ? 1.0 : 0.0;
+    int n = gl_VertexID & 3;
+    float u = n == 1 || n == 2 ? 1.0 : 0.0, v = n >= 2 ? 1.0 : 0.0;
     uint face = (quad.z >> 16u) & 0xffu;
     uint object = quad.w & 0xffffu;
     vec3 corner = vec3(float(quad.x & 0xffffu), float(quad.x >> 16u), float(quad.y & 0xffffu));
@@ -39,9 +39,9 @@ const vertexShader = /* glsl */ `
     else { corner += vec3(u * a, v * b, side); normal.z = 1.0; }
     normal *= 2.0 * side - 1.0;
     vLight = 0.80 + 0.20 * dot(normal, normalize(vec3(-0.35, -0.55, 0.75)));
-    vec4 mvPosition = viewMatrix * vec4(workspace + cell * corner, 1.0);
-    #include <clipping_planes_vertex>
-    gl_Position = projectionMatrix * mvPosition;
+    vec3 place = workspace + cell * corner;
+    cutAt(place);
+    gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
     float gone = texelFetch(hidden, ivec2(object & 255u, object >> 8u), 0).r;
     if (gone > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   }`;
@@ -50,10 +50,10 @@ const fragmentShader = /* glsl */ `
   uniform vec3 colour;
   uniform float opacity;
   varying float vLight;
-  #include <clipping_planes_pars_fragment>
+  ${cutFragment}
 
   void main() {
-    #include <clipping_planes_fragment>
+    cutAway();
     gl_FragColor = vec4(colour * vLight, opacity);
     #include <colorspace_fragment>
   }`;
@@ -86,7 +86,7 @@ export interface ShellLook {
   origin: Vector3;
   cell: number;
   hidden: HiddenObjects;
-  clip: Plane[];
+  cut: Cut;
 }
 
 /** @param depthOnly a first pass that leaves only the nearest surface of a shell to be coloured */
@@ -101,13 +101,12 @@ export function shellMaterial(look: ShellLook, depthOnly: boolean): ShaderMateri
       hidden: { value: look.hidden.texture },
       colour: { value: new Color().setRGB(...look.colour, SRGBColorSpace) },
       opacity: { value: look.opacity },
+      cut: look.cut,
     },
     side: DoubleSide,
     transparent: !opaque,
     depthWrite: opaque || depthOnly,
     colorWrite: !depthOnly,
-    clipping: true,
-    clippingPlanes: look.clip,
     polygonOffset: depthOnly,
     polygonOffsetFactor: 0.5,
     polygonOffsetUnits: 1,

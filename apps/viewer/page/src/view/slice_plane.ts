@@ -6,22 +6,18 @@
 import {
   BufferAttribute,
   BufferGeometry,
-  Color,
   DataTexture,
-  DoubleSide,
   Group,
-  LineBasicMaterial,
   LineLoop,
   Mesh,
-  MeshBasicMaterial,
   NearestFilter,
-  Plane,
-  SRGBColorSpace,
-  Vector3,
+  Vector4,
+  type Vector3,
 } from "three";
 import type { Field, Vec3 } from "../protocol/hello";
 import type { Axis, SliceAnswer } from "../protocol/shapes";
 import type { Look } from "./look";
+import { flatMaterial, noCut, sliceMaterial, type Cut } from "./material";
 
 /** The four corners of a plane across the workspace, and the axes that lie in it. */
 function corners(field: Field, axis: Axis, where: number): Float32Array {
@@ -45,28 +41,23 @@ function corners(field: Field, axis: Axis, where: number): Float32Array {
 
 export class SlicePlane {
   readonly group = new Group();
-  /** Cuts away what is in front of the slice; `clip` is empty where nothing is. */
-  readonly clip: Plane[] = [];
+  /** Cuts away what is in front of the slice, if anything is. */
+  readonly cut: Cut = noCut();
 
   axis: Axis = 1;
   where = 0;
-  private readonly plane = new Plane();
   private cutsAway = true;
   private answer: SliceAnswer | null = null;
   private readonly geometry = new BufferGeometry();
   private readonly outline = new BufferGeometry();
-  private readonly material = new MeshBasicMaterial({ side: DoubleSide, transparent: true });
-  private readonly ground = new MeshBasicMaterial({
-    side: DoubleSide,
-    transparent: true,
-    depthWrite: false,
-  });
-  private readonly frame = new LineBasicMaterial();
+  private readonly pixels: { value: DataTexture | null } = { value: null };
+  private readonly material = sliceMaterial(this.pixels);
+  private readonly ground = flatMaterial({ depthWrite: false });
+  private readonly frame = flatMaterial();
 
   constructor(private readonly field: Field) {
     this.geometry.setIndex([0, 1, 2, 0, 2, 3]);
     this.geometry.setAttribute("uv", new BufferAttribute(new Float32Array(8), 2));
-    this.material.alphaTest = 0.5;
     const painted = new Mesh(this.geometry, this.material);
     const ground = new Mesh(this.geometry, this.ground);
     ground.renderOrder = 2; // first, so that only empty space lets it through
@@ -101,14 +92,12 @@ export class SlicePlane {
 
   /** @param pixels shape (height, width, 4), of the cut that was placed */
   paint(pixels: Uint8Array<ArrayBuffer>, width: number, height: number): void {
-    this.material.map?.dispose();
+    this.pixels.value?.dispose();
     const texture = new DataTexture(pixels, Math.max(1, width), Math.max(1, height));
-    texture.colorSpace = SRGBColorSpace;
     texture.magFilter = NearestFilter;
     texture.minFilter = NearestFilter;
     texture.needsUpdate = true;
-    this.material.map = texture;
-    this.material.needsUpdate = true;
+    this.pixels.value = texture;
   }
 
   get latest(): SliceAnswer | null {
@@ -121,27 +110,31 @@ export class SlicePlane {
 
   /** Turns the cut-away side towards the camera. Called before each frame. */
   face(camera: Vector3): void {
-    this.clip.length = 0;
-    const cut = this.answer;
-    if (!cut || !this.cutsAway || !this.group.visible) return;
-    const towards = Math.sign(camera.getComponent(cut.axis) - cut.where) || 1;
-    const normal = new Vector3().setComponent(cut.axis, -towards);
+    const plane = this.cut.value.set(0, 0, 0, 1);
+    const { answer } = this;
+    if (!answer || !this.cutsAway || !this.group.visible) return;
+    const towards = Math.sign(camera.getComponent(answer.axis) - answer.where) || 1;
+    plane.setComponent(answer.axis, -towards);
     // A hair behind the slice, so that it is not fought over.
-    this.plane.set(normal, towards * cut.where - 0.02 * this.field.voxelSize);
-    this.clip.push(this.plane);
+    plane.w = towards * answer.where - 0.02 * this.field.voxelSize;
+  }
+
+  /** Whether a place is not drawn, as the slice was turned for the last frame. */
+  cutsAwayAt({ x, y, z }: Vector3): boolean {
+    return this.cut.value.dot(new Vector4(x, y, z, 1)) < 0;
   }
 
   setLook(look: Look, theme: "dark" | "light"): void {
-    this.frame.color = new Color(look.outline);
-    this.ground.color = new Color(theme === "dark" ? "#dfe7f0" : "#ffffff");
-    this.ground.opacity = theme === "dark" ? 0.07 : 0.55;
+    this.frame.setColour(look.outline);
+    if (theme === "dark") this.ground.setColour("#dfe7f0", 0.07);
+    else this.ground.setColour("#ffffff", 0.55);
   }
 
   dispose(): void {
     this.group.removeFromParent();
     this.geometry.dispose();
     this.outline.dispose();
-    this.material.map?.dispose();
+    this.pixels.value?.dispose();
     for (const material of [this.material, this.ground, this.frame]) material.dispose();
   }
 }

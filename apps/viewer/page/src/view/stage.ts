@@ -4,14 +4,13 @@
 // The room that everything stands in: camera, light, orbiting. It draws only when something has
 // changed, so that a page that shows a resting arm costs nothing.
 import {
-  AmbientLight,
   Box3,
-  DirectionalLight,
-  HemisphereLight,
   PerspectiveCamera,
   Scene,
+  Vector2,
   Vector3,
   WebGLRenderer,
+  type Object3D,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
@@ -19,7 +18,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 const restAfter_ms = 1000;
 // What comes within this time is drawn at once, and not piece by piece: where the processor draws,
 // each frame that shows half of it delays the other half.
-const longestRest_ms = 800;
+const longestRest_ms = 1500;
 
 export type ViewDirection = "iso" | "front" | "side" | "top";
 
@@ -30,13 +29,12 @@ const directions: Record<ViewDirection, Vector3> = {
   top: new Vector3(0, -0.001, 1), // not straight down: up would have no direction
 };
 
-/** Whether the processor draws for want of a graphics card: smooth edges then cost more than they show. */
-function isDrawnByProcessor(): boolean {
-  const trial = document.createElement("canvas").getContext("webgl2");
-  const names = trial?.getExtension("WEBGL_debug_renderer_info");
-  const name = names ? String(trial?.getParameter(names.UNMASKED_RENDERER_WEBGL)) : "";
-  trial?.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+/** With smooth edges where a graphics card draws them; for a processor they cost more than they show. */
+function contextOf(canvas: HTMLCanvasElement): WebGL2RenderingContext | undefined {
+  const context =
+    canvas.getContext("webgl2", { alpha: true, antialias: true, failIfMajorPerformanceCaveat: true }) ??
+    canvas.getContext("webgl2", { alpha: true, antialias: false });
+  return context ?? undefined; // three.js then says that there is none
 }
 
 export class Stage {
@@ -49,22 +47,17 @@ export class Stage {
   readonly frameTimes: number[] = [];
 
   private wanted = false;
-  private rests = false;
+  private rests = true; // until there is something to draw
   private lastFrame = 0;
   private focus = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
   private readonly beforeFrame: (() => void)[] = [];
   private prepareHalf: ((half: 0 | 1) => void) | null = null;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: !isDrawnByProcessor(), alpha: true });
+    this.renderer = new WebGLRenderer({ canvas, context: contextOf(canvas), alpha: true });
     // Asking how each shader compiled waits for it; that they do is tested before anybody opens the page.
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
     this.renderer.setClearAlpha(0);
-    this.renderer.localClippingEnabled = true; // objects are cut away before the slice
-    this.scene.add(new HemisphereLight(0xffffff, 0x8c97a5, 1.5), new AmbientLight(0xffffff, 0.35));
-    const sun = new DirectionalLight(0xffffff, 1.7);
-    sun.position.set(-1.5, -2.5, 4);
-    this.scene.add(sun);
 
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, canvas);
@@ -72,8 +65,17 @@ export class Stage {
     this.orbit.addEventListener("change", () => this.draw());
     this.look("iso");
 
-    new ResizeObserver(() => this.resize()).observe(canvas);
-    this.resize();
+    new ResizeObserver(() => this.fit()).observe(canvas);
+  }
+
+  /** Begins to make the shaders of things: it takes a while, in which other things can be done. */
+  prepare(things: Object3D): void {
+    this.renderer.compile(things, this.camera);
+  }
+
+  /** What is shown is about to come: nothing else should take time now. */
+  get isResting(): boolean {
+    return this.rests;
   }
 
   /** Draws nothing until all has come, or for a moment at most. */
@@ -155,7 +157,7 @@ export class Stage {
   setHalves(prepare: ((half: 0 | 1) => void) | null): void {
     if ((this.prepareHalf === null) === (prepare === null)) return;
     this.prepareHalf = prepare;
-    this.resize();
+    this.fit();
   }
 
   /** A pointer's place in the picture that it is over as three.js wants it, -1..1. */
@@ -205,11 +207,16 @@ export class Stage {
     this.renderer.setViewport(0, 0, 2 * width, height);
   }
 
-  private resize(): void {
+  /** Draws in the canvas's size on the page from now on. */
+  fit(): void {
     const width = Math.max(1, this.canvas.clientWidth);
     const height = Math.max(1, this.canvas.clientHeight);
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.renderer.setSize(width, height, false);
+    const pixelRatio = Math.min(window.devicePixelRatio, 2);
+    const before = this.renderer.getSize(new Vector2());
+    // A size that is set means new memory to draw into, even where it is the old size.
+    if (before.x !== width || before.y !== height || this.renderer.getPixelRatio() !== pixelRatio) {
+      this.renderer.setDrawingBufferSize(width, height, pixelRatio);
+    }
     this.camera.aspect = (this.prepareHalf ? width / 2 : width) / height;
     this.camera.updateProjectionMatrix();
     this.draw();

@@ -39,7 +39,7 @@ export function surfaceUnder(
   const { origin, direction } = ray.ray;
   const at = (distance: number): Vector3 => origin.clone().addScaledVector(direction, distance);
   const isSeen = (distance: number): boolean =>
-    workplace.slice.clip.every((plane) => plane.distanceToPoint(at(distance)) >= 0);
+    !workplace.slice.cutsAwayAt(at(distance));
   const behind = 1e-3 * workplace.hello.field.voxelSize;
   const candidates: { at: number; object: number | null }[] = [];
 

@@ -6,10 +6,8 @@
 import {
   BufferAttribute,
   BufferGeometry,
-  Color,
   Group,
   Line,
-  LineBasicMaterial,
   Mesh,
   MeshBasicMaterial,
   RingGeometry,
@@ -18,6 +16,7 @@ import {
   type Camera,
   type Raycaster,
 } from "three";
+import { flatMaterial, withoutNormals } from "./material";
 
 // On the screen, whatever the distance: the ring's radius beside the height of the view.
 const apparentSize = 0.028;
@@ -29,13 +28,13 @@ export class ToolHandle {
   private readonly target: Mesh;
   private readonly reach: Mesh;
   private readonly thread: Line;
-  private readonly material = new MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.95 });
-  private readonly line = new LineBasicMaterial({ depthTest: false, transparent: true });
+  private readonly material = flatMaterial({ depthTest: false, opacity: 0.95 });
+  private readonly line = flatMaterial({ depthTest: false });
   private taken = false;
 
   constructor() {
-    this.ring = new Mesh(new RingGeometry(0.78, 1, 40), this.material);
-    this.target = new Mesh(new SphereGeometry(0.3, 16, 12), this.material);
+    this.ring = new Mesh(withoutNormals(new RingGeometry(0.78, 1, 40)), this.material);
+    this.target = new Mesh(withoutNormals(new SphereGeometry(0.3, 16, 12)), this.material);
     // Takes hold a little beside the ring too; never drawn.
     this.reach = new Mesh(new SphereGeometry(1.35, 12, 8), new MeshBasicMaterial({ visible: false }));
     const ends = new BufferGeometry();
@@ -47,8 +46,8 @@ export class ToolHandle {
   }
 
   setColour(colour: string): void {
-    this.material.color = new Color(colour);
-    this.line.color = new Color(colour);
+    this.material.setColour(colour);
+    this.line.setColour(colour);
   }
 
   take(taken: boolean): void {

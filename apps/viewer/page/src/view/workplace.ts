@@ -3,7 +3,7 @@
 
 // Everything that is drawn of one field and one arm: fetched when a field comes into place, thrown
 // away when another one does.
-import { Box3, Group, Vector3 } from "three";
+import { Box3, BufferAttribute, BufferGeometry, Group, Mesh, Points, Vector3 } from "three";
 import type { Connection } from "../protocol/connection";
 import type { Feel, Hello } from "../protocol/hello";
 import { meshCommand, shellCommand, sliceCommand } from "../protocol/command";
@@ -11,12 +11,13 @@ import { fromServer } from "../protocol/message";
 import { readMesh, readShellPart, readSlice, type Axis } from "../protocol/shapes";
 import type { BodyPoints, Snapshot } from "../protocol/snapshot";
 import { Arm } from "./arm";
-import { FeltPoints } from "./felt_points";
+import { FeltPoints, pointMaterial } from "./felt_points";
 import { ForceArrow } from "./force_arrow";
 import { LayerShells } from "./layer_shells";
 import { looks, type Theme } from "./look";
 import { ObjectMeshes } from "./object_meshes";
-import { HiddenObjects } from "./shell_material";
+import { flatMaterial, litMaterial, noCut, sliceMaterial } from "./material";
+import { HiddenObjects, shellMaterial } from "./shell_material";
 import { largestViscosity, paintSlice, sliceColours, type SliceColouring } from "./slice_paint";
 import { SlicePlane } from "./slice_plane";
 import type { Stage } from "./stage";
@@ -35,6 +36,22 @@ export interface Shown {
   metresPerNewton: number;
 }
 
+/** One of each kind of thing that a workplace is drawn with. */
+export function samplesOfWorkplaces(): Group {
+  const vectors = new BufferAttribute(new Float32Array(), 3);
+  const bare = new BufferGeometry().setAttribute("position", vectors);
+  const surface = new BufferGeometry().setAttribute("position", vectors).setAttribute("normal", vectors);
+  const shell = { colour: [0, 0, 0], origin: new Vector3(), cell: 1, hidden: new HiddenObjects(0), cut: noCut() } as const;
+  return new Group().add(
+    new Mesh(surface, litMaterial()),
+    new Mesh(bare, flatMaterial()),
+    new Mesh(bare, sliceMaterial({ value: null })),
+    new Points(bare, pointMaterial(1)),
+    new Mesh(new BufferGeometry(), shellMaterial({ ...shell, opacity: 1 }, false)),
+    new Mesh(new BufferGeometry(), shellMaterial({ ...shell, opacity: 0.5 }, false)),
+  );
+}
+
 export class Workplace {
   readonly root = new Group();
   readonly hidden: HiddenObjects;
@@ -51,6 +68,7 @@ export class Workplace {
   private readonly asked = new Map<number, Promise<void>>(); // shells, by rank
   private wantedSlice: { axis: Axis; where: number } | null = null;
   private sliceIsUnderWay = false;
+  private paintIsDue = false;
   private disposed = false;
   private armGivesWay = false;
 
@@ -70,8 +88,8 @@ export class Workplace {
     this.feel = hello.feel;
     this.hidden = new HiddenObjects(field.objects.length);
     this.slice = new SlicePlane(field);
-    this.objects = new ObjectMeshes(this.slice.clip);
-    this.shells = new LayerShells(field, this.hidden, this.slice.clip);
+    this.objects = new ObjectMeshes(this.slice.cut);
+    this.shells = new LayerShells(field, this.hidden, this.slice.cut);
     this.arm = new Arm(robot);
     this.arrow = new ForceArrow(size / 550);
     this.root.add(
@@ -93,6 +111,12 @@ export class Workplace {
     const skin = meshes.every((hasMesh) => hasMesh) ? [] : [this.shell(0)];
     const ranks = [...this.shown.shells].map((rank) => this.shell(rank));
     await Promise.all([...links, ...skin, ...ranks, slice]);
+  }
+
+  /** Called before each frame. */
+  prepareFrame(camera: Vector3): void {
+    this.slice.face(camera);
+    if (this.paintIsDue) this.paint();
   }
 
   setPoints(points: BodyPoints): void {
@@ -122,7 +146,9 @@ export class Workplace {
 
   setFeel(feel: Feel): void {
     this.feel = feel;
-    if (this.shown.colouring === "viscosity") this.paint();
+    if (this.shown.colouring !== "viscosity") return;
+    this.paintIsDue = true;
+    this.stage.draw();
   }
 
   /** Shows what `shown` says now. */
@@ -145,7 +171,7 @@ export class Workplace {
     this.points?.showDots(shown.points);
     this.points?.showDrag(shown.drag);
     if (this.points) this.points.group.visible = armIsShown;
-    this.paint();
+    this.paintIsDue = true;
     this.stage.draw();
   }
 
@@ -158,7 +184,7 @@ export class Workplace {
   hide(object: number, hidden: boolean): void {
     this.hidden.set(object, hidden);
     this.objects.show(object, !hidden);
-    this.paint();
+    this.paintIsDue = true;
     this.stage.draw();
   }
 
@@ -187,7 +213,7 @@ export class Workplace {
         const answer = readSlice(await this.connection.ask(sliceCommand(wanted.axis, wanted.where, 0)));
         if (answer.generation !== this.hello.generation || this.disposed) return;
         this.slice.place(answer);
-        this.paint();
+        this.paintIsDue = true;
         this.stage.draw();
         this.onSlice();
       }
@@ -243,6 +269,7 @@ export class Workplace {
   }
 
   private paint(): void {
+    this.paintIsDue = false;
     const cut = this.slice.latest;
     if (!cut) return;
     const { records, ranks } = this.hello.field;

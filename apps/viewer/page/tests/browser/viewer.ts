@@ -107,6 +107,7 @@ export function theBrowser(): Promise<Browser> {
       "--use-angle=swiftshader",
       "--enable-unsafe-swiftshader",
       "--ignore-gpu-blocklist",
+      "--disable-gpu-rasterization", // as a browser does by itself where there is no graphics card
       "--disable-background-networking",
     ],
   });
