@@ -25,7 +25,7 @@ cd "$repository"
 if [[ ! -f build/release/build.ninja ]] || ! grep -q '^VICINITY_BRIDGE:BOOL=ON' build/release/CMakeCache.txt; then
   cmake --preset release -DVICINITY_BRIDGE=ON >/dev/null
 fi
-cmake --build build/release --target vicinity_cli two_machines_relay two_machines_arm >/dev/null
+cmake --build build/release --target vicinity_cli vicinity_bridge_cli two_machines_relay two_machines_arm >/dev/null
 vicinity=$PWD/build/release/apps/cli/vicinity
 tests=$PWD/build/release/tests
 
