@@ -27,7 +27,7 @@ packages=(
 # What only some need:
 #   --benchmarks     the benchmarks
 #   --peers          the benchmarks, and what scripts/bench.sh measures us beside (150 MB)
-#   --bridge         what VICINITY_BRIDGE needs, and the second DDS that its tests talk to
+#   --bridge         what VICINITY_BRIDGE needs, and its tests: a second DDS, network namespaces
 #   --python         what VICINITY_PYTHON and its tests need, and the tests of Debian packages
 #   --readers        programs that our exports are for, which open them in tests: numpy and OpenVDB;
 #                    VTK's reader, and that of recordings, come from npm
@@ -39,7 +39,7 @@ for flag in "$@"; do
     --benchmarks) packages+=(libbenchmark-dev) ;;
     --peers) packages+=(libbenchmark-dev libnanovdb-dev libfcl-dev libcgal-dev liboctomap-dev
                         libdynamicedt3d-dev python3-scipy) ;;
-    --bridge) packages+=(cyclonedds-dev libfastrtps-dev libfastcdr-dev openssl) ;;
+    --bridge) packages+=(cyclonedds-dev libfastrtps-dev libfastcdr-dev openssl iproute2) ;;
     --python) packages+=(pybind11-dev python3-dev python3-numpy python3-pip python3-venv python3-setuptools
                          python3-wheel mypy dpkg-dev file) ;;
     --readers) packages+=(python3-numpy python3-openvdb) ;;

@@ -25,7 +25,7 @@ class Entry:
 
     @property
     def names(self):
-        return [word for word in re.split("[ ,]", self.head) if word.startswith("-")]
+        return [word for word in self.head.split(" ")[0].split(",") if word.startswith("-")]
 
     @property
     def takes_value(self):

@@ -67,10 +67,10 @@ SHORTER = [
     ("vicinity simulate --demo -o study", "vicinity simulate --demo --trials 1 --method none -o study"),
     ("--trials 50 --method none,closing,rising", "--trials 1 --method none"),
     ("--voxel-size 0.01 ", "--voxel-size 0.02 "),
-    ("scripts/two_machines.sh 10 ", "scripts/two_machines.sh 0.3 "),
+    ("scripts/two_machines.sh 10 7", "scripts/two_machines.sh 0.1 1"),
     ("--shot ", "--port 0 --shot "),
 ]
-# What still takes a minute, most of which it waits: beside the others.
+# What still takes half a minute, most of which it waits: beside the others.
 SLOW = r"scripts/two_machines|vicinity serve .*--shot"
 # These run until Ctrl-C as they stand: here at once with those of their block, and not for long.
 LASTS = r"vicinity (serve (?!.*--shot)|bridge )"

@@ -51,6 +51,12 @@ class Manual(unittest.TestCase):
                 self.assertIn(f"'{option}[", texts["_vicinity"])
                 self.assertIn(f"-l {option[2:]} ", texts["vicinity.fish"])
 
+    def test_zsh_is_told_of_each_option_of_a_command_once(self):
+        text = (SHARE / "zsh/site-functions/_vicinity").read_text(encoding="utf-8")
+        for function in text.split("\n}\n"):
+            spellings = re.findall(r"^    '(-[^[]*)\[", function, re.MULTILINE)
+            self.assertEqual(sorted(spellings), sorted(set(spellings)))
+
     def test_bash_completes_commands_then_their_own_options(self):
         self.assertEqual(set(completed("vicinity", "")) & set(commands_of()), set(commands_of()))
         self.assertEqual(completed("vicinity", "build", "--voxel"), ["--voxel-size"])
