@@ -74,7 +74,7 @@ SHORTER = [
 SLOW = r"scripts/two_machines|vicinity serve .*--shot"
 # These run until Ctrl-C as they stand: here at once with those of their block, and not for long.
 LASTS = r"vicinity (serve (?!.*--shot)|bridge )"
-LASTING_S = 4
+LASTING_S = 5
 DOMAIN = 70 + os.getpid() % 30  # other tests have others
 NEEDS_DATA = "$DATA"
 
