@@ -27,11 +27,11 @@ packages=(
 # What only some need:
 #   --benchmarks     the benchmarks
 #   --peers          the benchmarks, and what scripts/bench.sh measures us beside (150 MB)
-#   --bridge         what VICINITY_BRIDGE needs, and the second DDS that its tests talk to
+#   --bridge         what VICINITY_BRIDGE needs, and its tests: a second DDS, network namespaces
 #   --python         what VICINITY_PYTHON and its tests need, and the tests of Debian packages
-#   --readers        programs that our exports are for, which open them in tests: numpy and OpenVDB
-#   --vtk            and VTK (250 MB or more)
-#   --viewer         the viewer's page, which npm builds; without it vicinity serve has no page
+#   --readers        programs that our exports are for, which open them in tests: numpy and OpenVDB;
+#                    VTK's reader, and that of recordings, come from npm
+#   --viewer         npm: it builds the viewer's page; without it vicinity serve has no page
 #   --viewer-tests   a browser (700 MB) for the tests that look at the page, and for serve --shot
 # Node, npm and a browser that came from elsewhere will do.
 for flag in "$@"; do
@@ -39,14 +39,13 @@ for flag in "$@"; do
     --benchmarks) packages+=(libbenchmark-dev) ;;
     --peers) packages+=(libbenchmark-dev libnanovdb-dev libfcl-dev libcgal-dev liboctomap-dev
                         libdynamicedt3d-dev python3-scipy) ;;
-    --bridge) packages+=(cyclonedds-dev libfastrtps-dev libfastcdr-dev openssl) ;;
+    --bridge) packages+=(cyclonedds-dev libfastrtps-dev libfastcdr-dev openssl iproute2) ;;
     --python) packages+=(pybind11-dev python3-dev python3-numpy python3-pip python3-venv python3-setuptools
                          python3-wheel mypy dpkg-dev file) ;;
     --readers) packages+=(python3-numpy python3-openvdb) ;;
-    --vtk) packages+=(python3-numpy python3-vtk9) ;;
     --viewer) command -v npm >/dev/null || packages+=(nodejs npm) ;;
     --viewer-tests) command -v chromium >/dev/null || packages+=(chromium) ;;
-    *) echo "install_packages.sh: there is no $flag; --benchmarks, --peers, --bridge, --python, --readers, --vtk, --viewer, --viewer-tests" >&2; exit 2 ;;
+    *) echo "install_packages.sh: there is no $flag; --benchmarks, --peers, --bridge, --python, --readers, --viewer, --viewer-tests" >&2; exit 2 ;;
   esac
 done
 

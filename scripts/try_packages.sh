@@ -8,7 +8,8 @@
 #   scripts/try_packages.sh ROOT [BUILD]
 #
 # ROOT is a folder for that Debian, made by debootstrap where there is none yet (160 MB; some hundred
-# more while packages are tried). BUILD is build/release, built with VICINITY_PYTHON on.
+# more while packages are tried). BUILD is build/release, built with VICINITY_PYTHON on; the bridge is
+# tried where VICINITY_BRIDGE was on too.
 set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 root=$(realpath -m "${1:?usage: try_packages.sh ROOT [BUILD]}")
@@ -57,7 +58,15 @@ inside "cd /try && vicinity build examples/02_arm_tick/cell.yaml -o cell.vicinit
         vicinity info cell.vicinity | head -n 3"
 inside "cd /try && vicinity export cell.vicinity -o cell.vdb && vicinity simulate --help >/dev/null"
 inside "ls /usr/share/man/man1/vicinity.1* /usr/share/bash-completion/completions/vicinity"
+inside "! vicinity bridge --help 2>&1"  # says where it is
 end
+
+if compgen -G "$try/vicinity-bridge_*.deb" >/dev/null; then
+  begin "vicinity-bridge: vicinity bridge, over DDS"
+  install /try/vicinity_*.deb /try/vicinity-bridge_*.deb
+  inside "cd /try && vicinity bridge examples/02_arm_tick/cell.yaml --robot examples/02_arm_tick/arm.urdf --seconds 2"
+  end
+fi
 
 begin "libvicinity0 and libvicinity-dev: C by pkg-config, C++ by find_package"
 install g++ make cmake pkg-config

@@ -1,22 +1,19 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The command line: words in, one command called, an exit code out. The only unit that knows CLI11,
-// which takes long to compile.
+// The command line: words in, one command called, an exit code out.
 
 #include <CLI/CLI.hpp>
-#include <exception>
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#ifdef VICINITY_BRIDGE
-#include "bridge.h"
-#endif
+#include "command_line.h"
 #include "commands/bench_tick.h"
+#include "commands/bridge.h"
 #include "commands/build.h"
 #include "commands/check.h"
 #include "commands/demo.h"
@@ -28,20 +25,14 @@
 #include "commands/simulate.h"
 #include "commands/slice.h"
 #include "commands/trace.h"
-#include "interruption.h"
+#include "exit_code.h"
 #ifdef VICINITY_VIEWER
 #include "serve.h"
 #endif
 #include "vicinity/geometry/error.h"
-#include "vicinity/geometry/nearest_word.h"
 
 namespace vicinity::cli {
 namespace {
-
-// Exit codes that scripts may rely on.
-constexpr int our_failure = 1;
-constexpr int unusable = 2;
-constexpr int interrupted = 130;
 
 constexpr const char* welcome =
     R"(Vicinity lets the operator of a remote arm feel how close the arm is to things.
@@ -183,40 +174,6 @@ void add_trace(CLI::App& parent, Run& run) {
   command.runs(trace, run);
 }
 
-// Which arm, where it stands, and what of it feels.
-void add_arm(CLI::App& app, ArmOptions& options) {
-  app.add_option("--robot", options.robot, "URDF file of the arm");
-  app.add_option("--base", options.base, "where it stands: x,y,z,roll,pitch,yaw [m, rad]");
-  app.add_option("--scene", options.scene,
-                 "take robot, base, points, excluded links and tool from this scene's 'robot' "
-                 "block; what is said here wins");
-  app.add_option("--packages", options.packages,
-                 "folders for the package:// addresses of its meshes");
-  app.add_option("--exclude", options.exclude, "links that feel nothing: base_link,...");
-  app.add_option("--tool", options.tool, "link that forces are about; default: the last one");
-}
-
-// How it feels, and for which device.
-void add_feel(CLI::App& app, ArmOptions& options) {
-  app.add_option("--memory", options.memory, "none, sustained, fading, short or rising")
-      ->capture_default_str();
-  app.add_option("--direction", options.direction,
-                 "all: oppose the whole velocity; closing: only what comes nearer")
-      ->capture_default_str();
-  app.add_option("--traversal", options.traversal,
-                 "swept: record every voxel passed; sampled: end points only")
-      ->capture_default_str();
-  app.add_option(
-      "--device", options.device,
-      "in the operator's hand: a known name, or a .yaml file; default: none, no limiter");
-  app.add_option("--mode", options.mode,
-                 "strict: within the device's own damping, provably passive; device: within a "
-                 "ceiling known from practice")
-      ->capture_default_str();
-  app.add_option("--master", options.master, "G,A,L,lambda of the master arm; default: 1,1,1,1");
-  app.add_option("--rate", options.rate, "ticks per second; default: the device's, or 1000");
-}
-
 void add_replay(CLI::App& parent, Run& run) {
   Command<ReplayOptions> command(
       parent, "replay", "Replay a joint log: torques, force and the reason for every tick",
@@ -226,11 +183,10 @@ void add_replay(CLI::App& parent, Run& run) {
   auto& [app, options] = command;
   app.add_option("FIELD", options->field, "made by vicinity build")->required();
   add_arm(app, options->arm);
-  app.add_option("--points-per-m2", options->arm.points_per_m2,
-                 "density of body points; default: 2000");
+  CLI::Option* const density = add_density(app, options->arm);
   app.add_option("--points", options->arm.points, "body points in all, in place of a density")
       ->check(CLI::Range(1, 100'000'000))
-      ->excludes("--points-per-m2");
+      ->excludes(density);
   add_feel(app, options->arm);
   app.add_option("--trajectory", options->trajectory,
                  "joint log: CSV with a header, or .mcap with ROS 2 joint states; positions run "
@@ -261,8 +217,7 @@ void add_serve(CLI::App& parent, Run& run) {
   app.add_option("INPUT", options->input, "made by vicinity build, or a scene (.yaml, .yml)")
       ->required();
   add_arm(app, options->arm);
-  app.add_option("--points-per-m2", options->arm.points_per_m2,
-                 "density of body points; default: 2000");
+  add_density(app, options->arm);
   add_feel(app, options->arm);
   app.add_option("--start", options->start, "where its joints are at first: q,q,... [rad or m]");
   app.add_option("--port", options->port, "0 takes one that is free")->capture_default_str();
@@ -280,47 +235,6 @@ void add_serve(CLI::App& parent, Run& run) {
   app.add_option("--seconds", options->seconds, "end after so long; default: Ctrl-C")
       ->check(CLI::PositiveNumber);
   command.runs(viewer::serve, run);
-}
-#endif
-
-#ifdef VICINITY_BRIDGE
-void add_bridge(CLI::App& parent, Run& run) {
-  Command<bridge::BridgeOptions> command(
-      parent, "bridge", "Feel for an arm in ROS 2: joint states in over DDS, wrench and reason out",
-      "vicinity bridge cell.vicinity --robot arm.urdf --base 0,0,0.8,0,0,0\n"
-      "  vicinity bridge scene.yaml --share-field /cell --dds here.xml\n"
-      "  vicinity bridge copy.vicinity --follow-field /cell --dds there.xml --robot arm.urdf");
-  auto& [app, options] = command;
-  app.add_option("INPUT", options->input, "made by vicinity build, or a scene (.yaml, .yml)")
-      ->required();
-  add_arm(app, options->arm);
-  app.add_option("--points-per-m2", options->arm.points_per_m2,
-                 "density of body points; default: 2000");
-  add_feel(app, options->arm);
-  app.add_option("--world", options->world,
-                 "the frame that the workspace is called; a transform from it to the robot's base "
-                 "link moves the base")
-      ->capture_default_str();
-  app.add_option("--domain", options->domain, "ROS_DOMAIN_ID")->capture_default_str();
-  app.add_option("--namespace", options->name_space,
-                 "in front of every topic but of transforms: /left");
-  app.add_option("--dds", options->dds,
-                 "Cyclone DDS configuration (XML); default: this machine alone");
-  auto* share = app.add_option(
-      "--share-field", options->share_field,
-      "give the field, and what becomes of it, to other machines under this name: /cell");
-  app.add_option("--follow-field", options->follow_field,
-                 "take the field that is shared under this name; INPUT is our copy of it, which "
-                 "need not be there yet")
-      ->excludes(share);
-  app.add_option("--half-speed-drag", options->half_speed_drag,
-                 "drag of the tool that halves the speed scale [N·s/m]")
-      ->capture_default_str();
-  app.add_option("--record", options->recording, "what was felt, while it is: .mcap");
-  app.add_option("--seconds", options->seconds, "end after so long; default: Ctrl-C")
-      ->check(CLI::PositiveNumber);
-  app.add_flag("--json", options->json, "the summary, for programs");
-  command.runs(bridge::bridge, run);
 }
 #endif
 
@@ -412,15 +326,6 @@ void add_reproduce(CLI::App& parent, Run& run) {
   command.runs(reproduce, run);
 }
 
-#ifndef VICINITY_BRIDGE
-void refuse_bridge(int argc, char** argv) {
-  if (argc < 2 || std::string_view(argv[1]) != "bridge") return;
-  throw Error({.where = "bridge",
-               .what = "this vicinity was built without the bridge to ROS 2",
-               .hint = "building it with -DVICINITY_BRIDGE=ON"});
-}
-#endif
-
 #ifndef VICINITY_VIEWER
 void refuse_serve(int argc, char** argv) {
   if (argc < 2 || std::string_view(argv[1]) != "serve") return;
@@ -430,45 +335,8 @@ void refuse_serve(int argc, char** argv) {
 }
 #endif
 
-// CLI11 only says that a word was not expected; people want to know which one was meant.
-void refuse_unknown_words(const CLI::App& app, int argc, char** argv) {
-  const CLI::App* command = &app;
-  std::string name = "vicinity";
-  int n = 1;
-  for (; n < argc; ++n) {
-    std::vector<std::string> commands;
-    const CLI::App* next = nullptr;
-    for (const CLI::App* each : command->get_subcommands({})) {
-      commands.push_back(each->get_name());
-      if (each->get_name() == argv[n]) next = each;
-    }
-    if (commands.empty() || *argv[n] == '-') break;
-    if (next == nullptr) {
-      const std::string nearest = nearest_word(argv[n], commands);
-      throw Error({.where = argv[n],
-                   .what = "there is no such command",
-                   .hint = name + (nearest.empty() ? " --help" : " " + nearest)});
-    }
-    command = next;
-    name += std::string(" ") + argv[n];
-  }
-  if (command == &app) return;
-  std::vector<std::string> known;
-  for (const CLI::Option* option : command->get_options()) {
-    for (const std::string& long_name : option->get_lnames()) known.push_back("--" + long_name);
-  }
-  for (; n < argc && std::string_view(argv[n]) != "--"; ++n) {
-    const std::string word = argv[n];
-    const std::string option = word.substr(0, word.find('='));
-    if (!option.starts_with("--") || command->get_option_no_throw(option) != nullptr) continue;
-    const std::string nearest = nearest_word(option, known);
-    throw Error({.where = option,
-                 .what = name + " has no such option",
-                 .hint = nearest.empty() ? name + " --help" : nearest});
-  }
-}
-
 int run(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "bridge") become_bridge(argv + 2);
   CLI::App app("Feel how close a remote arm is to things before it touches them.", "vicinity");
   app.set_version_flag("--version", "vicinity " VICINITY_VERSION);
   app.require_subcommand(0, 1);
@@ -490,51 +358,19 @@ int run(int argc, char** argv) {
 #else
   refuse_serve(argc, argv);
 #endif
-#ifdef VICINITY_BRIDGE
-  add_bridge(app, chosen);
-#else
-  refuse_bridge(argc, argv);
-#endif
+  app.add_subcommand("bridge", bridge_does);
   app.footer("Example:\n  vicinity demo");
 
-  refuse_unknown_words(app, argc, argv);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    const std::string name = argc > 1 ? std::string(" ") + argv[1] : "";
-    throw Error({.what = error.what(), .hint = "vicinity" + name + " --help"});
-  }
-  if (!chosen) {
+  return run_words(app, argc, argv, [&] {
+    if (chosen) return chosen();
     std::cout << welcome;
     return 0;
-  }
-  catch_interruptions();
-  const int code = chosen();
-  std::cout.flush();
-  if (!std::cout) throw std::runtime_error("standard output could not be written");
-  return code;
+  });
 }
 
 }  // namespace
 }  // namespace vicinity::cli
 
 int main(int argc, char** argv) {
-  using namespace vicinity::cli;
-  try {
-    return run(argc, argv);
-  } catch (const vicinity::Error& error) {
-    std::cerr << "vicinity: " << error.what() << '\n';
-    return unusable;
-  } catch (const Interrupted&) {
-    return interrupted;
-  } catch (const std::bad_alloc&) {
-    std::cerr << "vicinity: this machine has too little memory for that; try a larger "
-                 "--voxel-size, smaller bounds, or fewer ranks\n";
-    return our_failure;
-  } catch (const std::exception& error) {
-    std::cerr << "vicinity: " << error.what()
-              << "; this should not have happened, and a report of it would help\n";
-    return our_failure;
-  }
+  return vicinity::cli::exit_code_of([&] { return vicinity::cli::run(argc, argv); });
 }

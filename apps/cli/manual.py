@@ -25,7 +25,7 @@ class Entry:
 
     @property
     def names(self):
-        return [word for word in re.split("[ ,]", self.head) if word.startswith("-")]
+        return [word for word in self.head.split(" ")[0].split(",") if word.startswith("-")]
 
     @property
     def takes_value(self):
@@ -53,8 +53,14 @@ def output_of(*command):
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout
 
 
-def read_command(program, words):
-    text = output_of(program, *words[1:], "--help")
+def read_command(program, words, does=""):
+    try:
+        text = output_of(program, *words[1:], "--help")
+    except subprocess.CalledProcessError as error:
+        if error.returncode != 2:
+            raise
+        # A program of its own, as the bridge is, which is not here: known by its name alone.
+        return Command(words, does, " ".join(words) + " ...", [], [], [], [])
     titles = r"^(Positionals|Options|Subcommands|Example):\n"
     head, *sections = re.split(titles, text, flags=re.MULTILINE)
     does, usage = re.match(r"(.*)\nUsage: (.*)\n", head).groups()
@@ -69,7 +75,7 @@ def read_command(program, words):
             elif line.strip():
                 label, _, says = line.strip().partition("  ")
                 entries[name].append(Entry(label, says.strip()))
-    commands = [read_command(program, words + [entry.head]) for entry in entries["Subcommands"]]
+    commands = [read_command(program, words + [e.head], e.says) for e in entries["Subcommands"]]
     positionals, options, _, examples = entries.values()
     return Command(words, does, usage, positionals, options, examples, commands)
 
@@ -105,7 +111,9 @@ def manual_page(root, version):
         lines += [".PP", f".B {roff(command.usage)}"]
         for entry in command.positionals + [o for o in command.options if "--help" not in o.names]:
             lines += [".TP", f".B {roff(entry.shown)}", roff(entry.says)]
-        lines += [".PP", "Example:", ".PP", ".nf", ".RS", *map(roff, command.examples), ".RE", ".fi"]
+        if command.examples:
+            lines += [".PP", "Example:", ".PP", ".nf", ".RS"]
+            lines += [*map(roff, command.examples), ".RE", ".fi"]
     lines += [".SH EXIT STATUS", "0; 2 for input or options that cannot be used; 1 for a failure"]
     lines.append("of the program itself.")
     return "\n".join(lines) + "\n"

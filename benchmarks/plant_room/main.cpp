@@ -16,6 +16,9 @@
 
 namespace {
 
+constexpr const char* usage =
+    "plant_room FOLDER [voxel size in m] [segments around a pipe] [seed]\n";
+
 template <class T>
 bool reads(const char* text, T& value) {
   const auto [end, error] = std::from_chars(text, text + std::strlen(text), value);
@@ -25,11 +28,16 @@ bool reads(const char* text, T& value) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  for (int n = 1; n < argc; ++n) {
+    if (argv[n][0] != '-') continue;
+    std::fprintf(stderr, "plant_room: %s: there are no options; try %s", argv[n], usage);
+    return 2;
+  }
   vicinity::benchmarks::PlantRoomOptions options;
   if (argc < 2 || argc > 5 || (argc > 2 && !reads(argv[2], options.voxel_size)) ||
       (argc > 3 && !reads(argv[3], options.segments)) ||
       (argc > 4 && !reads(argv[4], options.seed))) {
-    std::fputs("plant_room FOLDER [voxel size in m] [segments around a pipe] [seed]\n", stderr);
+    std::fputs(usage, stderr);
     return 2;
   }
   try {

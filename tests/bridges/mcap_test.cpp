@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // MCAP files: what is written is read back, and what became of a file in between never goes
-// unnoticed. The public reader is asked in tests/mcap_reader.
+// unnoticed. The public reader is asked in tests/readers/mcap.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

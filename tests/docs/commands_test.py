@@ -4,46 +4,79 @@
 
     commands_test.py PROGRAM
 
-What is not run is listed below with the reason; of that, and of commands within sentences, at least
-every option is one that the program has. Real data is looked for in VICINITY_DATA.
+What is not run is said, with the reason; of that, and of commands within sentences, at least every
+option is one that the program has. Real data is looked for in VICINITY_DATA.
 """
 
+import concurrent.futures
 import functools
 import json
-import math
 import os
 import pathlib
 import re
 import shlex
 import shutil
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
 import unittest
+import urllib.request
+
+import workplace
+from workplace import BUILT, REPOSITORY
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
-REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 DATA = pathlib.Path(os.environ.get("VICINITY_DATA", "")).resolve()
 DOCUMENTS = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
 
-# How a command that is not run begins, and why.
+
+@functools.cache
+def options_of(*words):
+    done = subprocess.run([PROGRAM, *words, "--help"], capture_output=True, text=True)
+    return re.findall(r"-{1,2}[a-z][\w-]*", done.stdout) if done.returncode == 0 else None
+
+
+def has_bridge():
+    return options_of("bridge") is not None
+
+
+def may_make_machines():
+    return os.geteuid() == 0 and pathlib.Path("/dev/net/tun").exists() and shutil.which("ip")
+
+
+# How a command that is not run begins, and why; and what others need, to be run.
 NOT_RUN = [
-    (r"scripts/", "installs packages, builds or measures for minutes: CI is scripts/test.sh itself"),
+    (r"scripts/test\.sh", "CI is that itself"),
+    (r"scripts/bench\.sh", "builds the libraries beside it and measures for minutes"),
+    (r"scripts/try_packages\.sh", "installs a Debian: ten minutes; tests/package does it in small"),
     (r"cmake --preset", "builds all of it anew"),
-    (r"(\S*/)?vicinity serve ", "serves until Ctrl-C: tests/viewer drives it"),
-    (r"(\S*/)?vicinity bridge ", "bridges until Ctrl-C: tests/bridge drives it"),
     (r"pip wheel |python3 -m venv |venv/bin/pip ", "tests/python/wheel_test.py does just that"),
     (r"VICINITY_STORM=", "takes minutes; viewer_test runs it shorter"),
     (r"\(cd apps/viewer/page ", "measures in a browser"),
+]
+NEEDS = [
+    (r"vicinity serve ", lambda: options_of("serve") is not None, "this build has no viewer"),
+    (r"vicinity serve .* --shot ", lambda: shutil.which("chromium"), "there is no chromium on PATH"),
+    (r"vicinity bridge |scripts/dds_|scripts/two_", has_bridge, "this build has no bridge"),
+    (r"scripts/two_machines", may_make_machines, "it needs root, /dev/net/tun and iproute2"),
 ]
 # What takes minutes as it stands, and how it is made short.
 SHORTER = [
     ("vicinity simulate --demo -o study", "vicinity simulate --demo --trials 1 --method none -o study"),
     ("--trials 50 --method none,closing,rising", "--trials 1 --method none"),
     ("--voxel-size 0.01 ", "--voxel-size 0.02 "),
+    ("scripts/two_machines.sh 10 7", "scripts/two_machines.sh 0.1 1"),
+    ("--shot ", "--port 0 --shot "),
 ]
+# What still takes half a minute, most of which it waits: beside the others.
+SLOW = r"scripts/two_machines|vicinity serve .*--shot"
+# These run until Ctrl-C as they stand: here at once with those of their block, and not for long.
+LASTS = r"vicinity (serve (?!.*--shot)|bridge )"
+LASTING_S = 5
+DOMAIN = 70 + os.getpid() % 30  # other tests have others
 NEEDS_DATA = "$DATA"
-BUILT = "build/release/apps/cli/"
 
 
 def blocks(document, language):
@@ -65,49 +98,50 @@ def commands(block):
     assert not whole.strip(), f"not a whole command: {whole}"
 
 
+def within_sentences(document):
+    """Scripts, and what serves or bridges; other commands within sentences may be half ones."""
+    text = document.read_text(encoding="utf-8")
+    text = re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE)
+    return re.findall(r"`(scripts/[^`]*|vicinity (?:serve|bridge) [^`]*)`", text)
+
+
+def in_short(command):
+    """Without what only a reader needs: comments, line breaks and where the program was built."""
+    words = re.sub(r"\\\n|\s#.*", " ", command).split()
+    return " ".join(words).removeprefix(BUILT)
+
+
 def why_not_run(command):
-    return next((why for start, why in NOT_RUN if re.match(start, command)), None)
+    for start, why in NOT_RUN:
+        if re.match(start, command):
+            return why
+    return next((why for start, met, why in NEEDS if re.match(start, command) and not met()), None)
 
 
-@functools.cache
-def options_of(*words):
-    done = subprocess.run([PROGRAM, *words, "--help"], capture_output=True, text=True)
-    return re.findall(r"-{1,2}[a-z][\w-]*", done.stdout) if done.returncode == 0 else None
-
-
-def box_mesh(size, path):
-    """An STL of a box in millimetres, as text."""
-    x, y, z = (side / 2 for side in size)
-    corner = lambda n: (x if n & 1 else -x, y if n & 2 else -y, z if n & 4 else -z)
-    sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-    lines = ["solid vessel"]
-    for a, b, c, d in sides:
-        for triangle in ((a, b, c), (a, c, d)):
-            lines += ["facet normal 0 0 0", "outer loop"]
-            lines += ["vertex {} {} {}".format(*corner(n)) for n in triangle]
-            lines += ["endloop", "endfacet"]
-    path.write_text("\n".join([*lines, "endsolid vessel"]) + "\n")
-
-
-def workplace(folder):
-    """What a reader has before the first command: a mesh, a scene, an arm and a log of it."""
-    program = folder / BUILT
-    program.mkdir(parents=True)
-    (program / "vicinity").symlink_to(PROGRAM)
-    (folder / "scenes").symlink_to(REPOSITORY / "scenes")
-    box_mesh((300, 300, 1000), folder / "vessel.stl")
-    (folder / "cell.yaml").write_text(
-        "voxel_size: 0.01\nobjects:\n"
-        "  - {name: vessel, mesh: vessel.stl, units: mm, pose: {xyz: [0.7, 0, 0.9]}}\n"
-    )
-    shutil.copy(REPOSITORY / "scenes/hot_cell_arm.urdf", folder / "arm.urdf")
-    joints = [f"joint_{n}" for n in range(1, 8)]
-    lines = ["t," + ",".join(joints) + ",Time,Position1"]
-    for ms in range(0, 500):
-        angles = [0.1 * math.sin(0.01 * ms + n) for n in range(7)]
-        row = [0.001 * ms, *angles, ms, angles[0]]
-        lines.append(",".join(f"{number:.6f}" for number in row))
-    (folder / "log.csv").write_text("\n".join(lines) + "\n")
+def to_be_run():
+    """By block: the document, and commands that can be run here, each once and made short."""
+    seen = set()
+    for document in DOCUMENTS:
+        shown = [list(commands(block)) for block in blocks(document, "sh")]
+        shown += [[command + "\n"] for command in within_sentences(document)]
+        for block in shown:
+            if NEEDS_DATA in "".join(block) and not (DATA / "scenes/ariac_workcell").is_dir():
+                print(f"{document.name}: not run (no real data in VICINITY_DATA): {block[0]}")
+                continue
+            todo = []
+            for command in block:
+                for usual, short in SHORTER:
+                    command = command.replace(usual, short)
+                words = in_short(command)
+                if words in seen:
+                    continue
+                seen.add(words)
+                if why := why_not_run(words):
+                    print(f"{document.name}: not run ({why}): {words}")
+                else:
+                    todo.append(command)
+            if todo:
+                yield document, todo
 
 
 class Documents(unittest.TestCase):
@@ -115,50 +149,106 @@ class Documents(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        workplace(self.folder)
+        workplace.make(self.folder, PROGRAM)
+        paths = [self.folder / "doubles", self.folder / BUILT, os.environ["PATH"]]
         self.environment = {
             **os.environ,
-            "PATH": f"{self.folder / BUILT}:{os.environ['PATH']}",
+            "PATH": ":".join(map(str, paths)),
             "DATA": str(DATA),
         }
 
-    def run_in_workplace(self, script):
-        return subprocess.run(
-            ["bash", "-euc", script],
+    def start(self, words):
+        return subprocess.Popen(
+            words,
             cwd=self.folder,
             env=self.environment,
-            capture_output=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
             text=True,
         )
 
-    def test_every_block_of_commands_runs(self):
-        ran, seen = 0, set()
-        for document in DOCUMENTS:
-            for block in blocks(document, "sh"):
-                if NEEDS_DATA in block and not (DATA / "scenes").is_dir():
-                    print(f"not run, no real data in VICINITY_DATA: {block.split(maxsplit=4)[:3]}")
-                    continue
-                script = ""
-                for command in commands(block):
-                    for usual, short in SHORTER:
-                        command = command.replace(usual, short)
-                    words = " ".join(re.sub(r"\s#.*", "", command).split()).removeprefix(BUILT)
-                    if not why_not_run(command) and words not in seen:
-                        script += command
-                    seen.add(words)
-                if not script:
-                    continue
-                if "cell.vicinity" in script and not (self.folder / "cell.vicinity").exists():
-                    build = "vicinity build cell.yaml -o cell.vicinity"
-                    script = script if build in script else f"{build}\n{script}"
-                for command in commands(script):
-                    self.assertRegex(command, r"^(\S*/)?vicinity |^columns=|^for |^\n*$", document.name)
-                done = self.run_in_workplace(script)
-                if "built without the simulation" in done.stderr:
-                    continue
-                self.assertEqual(done.returncode, 0, f"{document.name}\n{script}\n{done.stderr}")
-                ran += 1
-        self.assertGreaterEqual(ran, 4)
+    def run_in_workplace(self, script):
+        process = self.start(["bash", "-euc", script])
+        out, err = process.communicate()
+        return subprocess.CompletedProcess(script, process.returncode, out, err)
+
+    def page_of(self, process):
+        """What a browser gets at the address that a server says."""
+        said = ""
+        for line in process.stdout:
+            said += line
+            if address := re.search(r"Open (http://127\.0\.0\.1:\d+/)", said):
+                with urllib.request.urlopen(address.group(1), timeout=5) as answer:
+                    return answer.read().decode()
+        return self.fail(f"no address: {said}{process.stderr.read()}")
+
+    def run_for_a_while(self, command):
+        words = shlex.split(command.replace("\\\n", " "), comments=True)
+        serves = words[1] == "serve"
+        words += ["--port", "0"] if serves else ["--domain", str(DOMAIN)]
+        words += ["--seconds", str(LASTING_S)]
+        copy = self.folder / words[2] if "--follow-field" in words else None
+        if copy:
+            copy.unlink(missing_ok=True)
+        process = self.start(words)
+        if serves:
+            self.assertRegex(self.page_of(process), "<title>|built without its page", command)
+        out, err = process.communicate()
+        self.assertEqual(process.returncode, 0, f"{command}\n{out}\n{err}")
+        if not serves:
+            self.assertRegex(err, r"bridging \d joints of .* in domain", command)
+        if copy:
+            self.assertTrue(copy.exists(), f"{command}\n{err}")
+
+    def test_every_command_that_is_shown_runs(self):
+        todo = list(to_be_run())
+        slow = [block for _, block in todo if re.match(SLOW, in_short(block[0]))]
+        pool = concurrent.futures.ThreadPoolExecutor()
+        self.addCleanup(pool.shutdown)
+        beside = [(block, pool.submit(self.run_in_workplace, "".join(block))) for block in slow]
+        for document, block in todo:
+            if block not in slow:
+                self.run_block(document, block, pool)
+        for block, result in beside:
+            done = result.result()
+            self.assertEqual(done.returncode, 0, f"{block}\n{done.stdout}\n{done.stderr}")
+        self.assertGreater(len(todo), 10)
+
+    def run_block(self, document, block, pool):
+        lasting = [command for command in block if re.match(LASTS, in_short(command))]
+        script = "".join(command for command in block if command not in lasting)
+        for command in commands(script):
+            allowed = r"^(\S*/)?vicinity |^scripts/|^columns=|^for |^\n*$"
+            self.assertRegex(command, allowed, document.name)
+        if "cell.vicinity" in "".join(block) and not (self.folder / "cell.vicinity").exists():
+            build = "vicinity build cell.yaml -o cell.vicinity\n"
+            script = script if build.strip() in script else build + script
+        done = self.run_in_workplace(script)
+        would_install = self.folder / "would_install"
+        if would_install.exists():
+            print(f"{document.name}: not run (packages are missing): {script}")
+            would_install.unlink()
+        elif "built without the simulation" in done.stderr:
+            print(f"{document.name}: not run (this build has no simulation): {script}")
+        else:
+            self.assertEqual(done.returncode, 0, f"{document.name}\n{script}\n{done.stderr}")
+            list(pool.map(self.run_for_a_while, lasting))
+
+    @unittest.skipUnless(options_of("serve"), "this build has no viewer")
+    def test_the_demo_is_served_as_it_says(self):
+        self.run_in_workplace("scripts/install_packages.sh --viewer")
+        if (self.folder / "would_install").exists():
+            self.skipTest("packages are missing")
+        with socket.socket() as port:
+            if port.connect_ex(("127.0.0.1", 8080)) == 0:
+                self.skipTest("port 8080 is taken")
+        process = self.start(["scripts/demo.sh", "--serve"])
+        self.addCleanup(process.kill)
+        self.assertRegex(self.page_of(process), "<title>|built without its page")
+        self.assertTrue((self.folder / "vicinity-demo/index.html").exists())
+        process.send_signal(signal.SIGINT)  # it has become vicinity serve
+        out, err = process.communicate(timeout=20)
+        self.assertEqual(process.returncode, 0, f"{out}\n{err}")
 
     def test_every_option_that_is_shown_is_there(self):
         shown = []

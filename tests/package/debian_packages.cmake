@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Makes the Debian packages of this build, installs them into a root of their own, uses each there and
-# removes them again: nothing is left. Given: BUILD, SOURCE, SCRATCH (an own folder), PYTHON, and TOOLS,
-# whether the command line is among them.
+# removes them again: nothing is left. Given: BUILD, SOURCE, SCRATCH (an own folder), PYTHON, and TOOLS
+# and BRIDGE, whether the command line and the bridge are among them.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 file(REMOVE_RECURSE ${SCRATCH})
@@ -16,6 +16,9 @@ set(names libvicinity0 libvicinity-dev python3-vicinity)
 if(TOOLS)
   list(APPEND names vicinity)
 endif()
+if(BRIDGE)
+  list(APPEND names vicinity-bridge)
+endif()
 foreach(name ${names})
   file(GLOB package ${SCRATCH}/made/${name}_*.deb)
   if(NOT package)
@@ -26,6 +29,10 @@ endforeach()
 foreach(package ${packages})
   run(dpkg-deb --field ${package} Package Version Depends)
   expect_text("Depends: .*(libc6|libvicinity0|libstdc)")
+  string(REGEX MATCH "libddsc" dds "${text}")
+  if(dds AND NOT package MATCHES "/vicinity-bridge_")
+    message(FATAL_ERROR "only the bridge is to need DDS:\n${text}")
+  endif()
 endforeach()
 
 # What they depend on is not in this root, nor a shell: the machine's own libraries and ldconfig serve.
@@ -49,6 +56,23 @@ expect_text(${root})
 if(TOOLS)
   run(${root}/usr/bin/vicinity info ${field})
   expect_text("post")
+endif()
+if(BRIDGE)
+  # It is the one beside vicinity that runs, whatever this machine has; without it, vicinity says so.
+  set(bridge ${CMAKE_COMMAND} -E env PATH=${root}/usr/bin vicinity bridge)
+  run(${bridge} --help)
+  expect_text("--share-field")
+  if(user EQUAL 0)
+    run(${dpkg} --purge vicinity-bridge)
+    list(REMOVE_ITEM names vicinity-bridge)
+  else()
+    file(REMOVE ${root}/usr/bin/vicinity-bridge)
+  endif()
+  execute_process(COMMAND ${bridge} --help RESULT_VARIABLE code ERROR_VARIABLE text)
+  if(NOT code EQUAL 2)
+    message(FATAL_ERROR "vicinity bridge without the bridge ends with ${code}: ${text}")
+  endif()
+  expect_text("installing the package vicinity-bridge")
 endif()
 
 set(ENV{PKG_CONFIG_PATH} ${root}/usr/lib/pkgconfig)

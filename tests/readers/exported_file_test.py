@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What `vicinity export` writes, opened by the program it is written for: nothing of ours is in here.
 
-    exported_file_test.py PROGRAM KIND [PICTURE.ppm]
+    exported_file_test.py PROGRAM KIND READER [PICTURE.pgm]
 
-KIND: npy (numpy), vdb (OpenVDB) or vti (VTK). Every value is held against what `vicinity query` says
-at the voxel's centre. Leaves a picture of one slice where asked. Exits with 77 where the reader is
-not installed.
+KIND: npy (numpy), vdb (OpenVDB) or vti (VTK, in JavaScript, which the folder READER has). Every value
+is held against what `vicinity query` says at the voxel's centre. Leaves a picture of one slice where
+asked. Exits with 77 where the reader is not installed.
 """
 
-import importlib
 import json
 import pathlib
 import subprocess
@@ -17,7 +16,7 @@ import sys
 import tempfile
 
 SKIPPED = 77
-MISSING = "skipped: {}; scripts/install_packages.sh --readers --vtk installs it"
+MISSING = "skipped: {}; scripts/install_packages.sh --readers --viewer installs it"
 try:
     import numpy as np
 except ImportError as missing:
@@ -38,12 +37,12 @@ objects:
 """
 
 
-def from_numpy(path):
+def from_numpy(path, _):
     beside = json.loads(path.with_suffix(".json").read_text())
     return np.load(path), np.array(beside["origin"]), beside["voxel_size"]
 
 
-def from_openvdb(path):
+def from_openvdb(path, _):
     import pyopenvdb
 
     rank, metadata = pyopenvdb.read(str(path), "rank"), pyopenvdb.readAllGridMetadata(str(path))
@@ -56,24 +55,17 @@ def from_openvdb(path):
     return values.astype(np.int16), np.array(rank.transform.indexToWorld((-0.5, -0.5, -0.5))), size
 
 
-def from_vtk(path):
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOXML import vtkXMLImageDataReader
-
-    reader = vtkXMLImageDataReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    image = reader.GetOutput()
-    cells = [points - 1 for points in image.GetDimensions()]
-    values = vtk_to_numpy(image.GetCellData().GetArray("rank"))
-    return values.reshape(cells[::-1]).transpose(), np.array(image.GetOrigin()), image.GetSpacing()[0]
+def from_vtk(path, reader):
+    script = pathlib.Path(reader) / "read.mjs"
+    if not script.exists():
+        raise ImportError("npm did not install VTK for JavaScript")
+    done = subprocess.run(["node", script, path], check=True, capture_output=True, text=True)
+    image = json.loads(done.stdout)
+    values = np.array(image["rank"]).reshape(image["cells"][::-1]).transpose()
+    return values, np.array(image["origin"]), image["spacing"][0]
 
 
-READERS = {
-    "npy": ("numpy", from_numpy),
-    "vdb": ("pyopenvdb", from_openvdb),
-    "vti": ("vtkmodules.vtkIOXML", from_vtk),
-}
+READERS = {"npy": from_numpy, "vdb": from_openvdb, "vti": from_vtk}
 
 
 def draw(values, path):
@@ -86,13 +78,7 @@ def draw(values, path):
     )
 
 
-def main(program, kind, picture=None):
-    module, read = READERS[kind]
-    try:
-        importlib.import_module(module)
-    except ImportError as missing:
-        print(MISSING.format(missing))
-        return SKIPPED
+def main(program, kind, reader, picture=None):
     with tempfile.TemporaryDirectory() as folder:
 
         def run(*words, **more):
@@ -103,7 +89,11 @@ def main(program, kind, picture=None):
         (pathlib.Path(folder) / "scene.yaml").write_text(SCENE)
         run("build", "scene.yaml", "-o", "f.vicinity")
         run("export", "f.vicinity", "-o", f"f.{kind}")
-        values, origin, size = read(pathlib.Path(folder) / f"f.{kind}")
+        try:
+            values, origin, size = READERS[kind](pathlib.Path(folder) / f"f.{kind}", reader)
+        except ImportError as missing:
+            print(MISSING.format(missing))
+            return SKIPPED
         values = np.asarray(values)
         voxels = np.argwhere(np.ones(values.shape, bool))
         centres = origin + size * (voxels + 0.5)
@@ -113,7 +103,7 @@ def main(program, kind, picture=None):
     expected = np.array([codes.get(one["kind"], one["rank"]) for one in said]).reshape(values.shape)
     np.testing.assert_array_equal(values, expected)
     assert set(np.unique(values)) == {-2, -1, 0, 1, 2, 3, 4}, np.unique(values)
-    print(f"{module}: {values.size} voxels as vicinity query has them")
+    print(f"{kind}: {values.size} voxels as vicinity query has them")
     if picture:
         draw(values, picture)
     return 0

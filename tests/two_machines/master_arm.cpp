@@ -3,12 +3,12 @@
 
 // The arm in the operator's hand, and whoever checks what it is told to feel.
 //
-//   two_machines_arm DDS_XML SECONDS SCENE SCENE...
+//   two_machines_arm DDS_XML SCENE SCENE...
 //
 // Publishes joint states of the scenes' arm at 1 kHz as /master/joint_states, for the bridge on its
 // own machine, and as /slave/joint_states, for the one at the other end of the way. Of the torques
 // that come back each must be zero, or what an oracle finds in the field that was shared then.
-// Events come on standard input, one a line:
+// Events come on standard input, one a line, and all ends with it:
 //
 //   scene N          the N-th scene (0 is the first, from the start) has been written
 //   start SIDE       a bridge is being started: master, slave
@@ -102,11 +102,10 @@ struct Side {
 
 class MasterArm {
  public:
-  MasterArm(const char* dds_file, double seconds, const std::vector<std::string>& scenes)
+  MasterArm(const char* dds_file, const std::vector<std::string>& scenes)
       : arm_(arm_of(scenes.front())),
         oracle_(arm_),
         motion_(arm_.robot.coordinates.size()),
-        steps_(static_cast<std::int64_t>(1000 * seconds)),
         participant_(
             {.domain = 0, .configuration = std::string("file://") + dds_file, .name_space = {}}) {
     FieldBuilder builder;
@@ -162,7 +161,7 @@ class MasterArm {
     state.name = names_;
     dds::Sample bytes;
     std::vector<double> q, qd, next, rendered(names_.size(), 0);
-    for (std::int64_t k = 0; k < steps_; ++k) {
+    for (std::int64_t k = 0; !ending_; ++k) {
       std::this_thread::sleep_until(begin_ + std::chrono::nanoseconds(k * period_ns));
       const std::int64_t stamp = begin_ns_ + k * period_ns;
       state.header.stamp = {static_cast<std::int32_t>(stamp / 1'000'000'000),
@@ -170,6 +169,7 @@ class MasterArm {
       motion_.at(1e-9 * static_cast<double>(k * period_ns), q, qd);
       state.position = q;
       state.velocity = qd;
+      states_ = k + 1;
       for (const Side& side : sides_) (void)dds::send(side.states, state, bytes);
       // What the hand feels until the next period: the newest torque from its own machine.
       {
@@ -189,9 +189,12 @@ class MasterArm {
 
   void hear_events() {
     pollfd waiting{STDIN_FILENO, POLLIN, 0};
-    while (poll(&waiting, 1, 0) > 0 && (waiting.revents & POLLIN) != 0) {
+    while (!ending_ && poll(&waiting, 1, 0) > 0) {
       char c = 0;
-      if (read(STDIN_FILENO, &c, 1) != 1) return;
+      if (read(STDIN_FILENO, &c, 1) != 1) {
+        ending_ = true;
+        return;
+      }
       if (c != '\n') {
         line_ += c;
         continue;
@@ -235,7 +238,7 @@ class MasterArm {
   void judge(Side& side, std::int64_t stamp, const std::vector<double>& torque) {
     ++side.answers;
     const std::int64_t k = (stamp - begin_ns_) / period_ns;
-    const bool ours = (stamp - begin_ns_) % period_ns == 0 && k >= 0 && k < steps_;
+    const bool ours = (stamp - begin_ns_) % period_ns == 0 && k >= 0 && k < states_;
     if (is_zero(torque)) {
       ++side.safe;
       if (ours) side.zeros.push_back(stamp);
@@ -316,7 +319,7 @@ class MasterArm {
   int report() {
     const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
     std::printf("%lld states at 1 kHz; %llu kills, %zu changes of the scene\n",
-                static_cast<long long>(steps_), number(kills_), changes_.size() - 1);
+                static_cast<long long>(states_), number(kills_), changes_.size() - 1);
     bool good = lowest_rendered_ >= 0;
     for (Side& side : sides_) {
       good =
@@ -343,7 +346,6 @@ class MasterArm {
   cli::Arm arm_;
   Oracle oracle_;
   Motion motion_;
-  std::int64_t steps_;
   dds::Participant participant_;
   std::vector<ViscosityField> fields_;
   std::vector<Side> sides_;
@@ -354,7 +356,8 @@ class MasterArm {
   std::uint64_t kills_ = 0;
   dds::Sample bytes_;
   std::string line_;
-  std::atomic<bool> done_ = false;
+  std::atomic<std::int64_t> states_ = 0;  // published so far
+  std::atomic<bool> ending_ = false, done_ = false;
   // What the hand renders: heard by one thread, used by the other.
   std::mutex mutex_;
   std::vector<double> newest_;
@@ -366,10 +369,9 @@ class MasterArm {
 }  // namespace vicinity::two_machines
 
 int main(int argc, char** argv) {
-  if (argc < 4) return 2;
+  if (argc < 3) return 2;
   try {
-    return vicinity::two_machines::MasterArm(argv[1], std::stod(argv[2]), {argv + 3, argv + argc})
-        .run();
+    return vicinity::two_machines::MasterArm(argv[1], {argv + 2, argv + argc}).run();
   } catch (const std::exception& error) {
     std::cerr << "two_machines_arm: " << error.what() << '\n';
     return 2;

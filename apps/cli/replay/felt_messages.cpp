@@ -10,19 +10,19 @@
 namespace vicinity::cli {
 namespace {
 
-constexpr std::uint64_t ns_per_s = 1'000'000'000;
+constexpr std::uint64_t ns_per_second = 1'000'000'000;
 
 ros2::Vector3 vector_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
 
 ros2::Time stamp_of(std::uint64_t time_ns) {
-  return {static_cast<std::int32_t>(time_ns / ns_per_s),
-          static_cast<std::uint32_t>(time_ns % ns_per_s)};
+  return {static_cast<std::int32_t>(time_ns / ns_per_second),
+          static_cast<std::uint32_t>(time_ns % ns_per_second)};
 }
 
 std::uint64_t nanoseconds_of(const ros2::Time& stamp) {
-  return static_cast<std::uint64_t>(stamp.sec) * ns_per_s + stamp.nanosec;
+  return static_cast<std::uint64_t>(stamp.sec) * ns_per_second + stamp.nanosec;
 }
 
 std::vector<std::string> object_names(const ViscosityField& field) {
