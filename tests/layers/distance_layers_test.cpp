@@ -364,10 +364,8 @@ void expect_true_and_tight(const Voxelised& object, const RankedNeighbours& laye
     int optimistic = 0;
     layers.ranks[n].for_each([&](const VoxelIndex& v) {
       // Where the centre is far enough for all of the voxel, its points need not be asked.
-      const double centre =
-          tree.distance(object.workspace.centre_of(v), std::numeric_limits<double>::infinity()) /
-          object.workspace.voxel_size;
-      if (centre - half_diagonal_vox >= promised + 0.5) return;
+      const double far = (promised + 0.5 + half_diagonal_vox) * object.workspace.voxel_size;
+      if (tree.distance(object.workspace.centre_of(v), far) >= far) return;
       const double least = least_distance(tree, object.workspace, v, random);
       if (least < promised - tolerance) ++optimistic;
       if (promised > 0) tightest = std::min(tightest, least - promised);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "layers/triple_loop.h"
+#include "rounds.h"
 #include "vicinity/geometry/error.h"
 
 namespace vicinity {
@@ -115,7 +116,7 @@ RandomObject random_object(std::mt19937& random, int largest) {
 }
 
 TEST(RankedNeighbours, AreTheTripleLoopsOnRandomObjects) {
-  for (unsigned seed = 1; seed <= 240; ++seed) {
+  for (unsigned seed = 1; seed <= test::rounds(240u); ++seed) {
     std::mt19937 random(seed);
     const auto pick = [&](int lo, int hi) { return std::uniform_int_distribution(lo, hi)(random); };
     const LayerShape shape = seed % 2 == 0 ? LayerShape::cube : LayerShape::sphere;

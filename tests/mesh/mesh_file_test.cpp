@@ -21,6 +21,7 @@
 
 #include "allocation_meter.h"
 #include "mesh_data.h"
+#include "rounds.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/mesh/inspection.h"
 #include "vicinity/mesh/primitive.h"
@@ -288,7 +289,7 @@ TEST(MeshFile, SeveralThreadsMayReadAtTheSameTime) {
 void expect_no_harm(const std::string& extension, const std::string& original) {
   const ScratchFolder folder;
   int read = 0;
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < test::rounds(40u); ++seed) {
     SCOPED_TRACE(testing::Message() << extension << " seed " << seed);
     std::mt19937 random(seed);
     std::string bytes = original;

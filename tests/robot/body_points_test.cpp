@@ -14,6 +14,7 @@
 #include <set>
 
 #include "robot/robots.h"
+#include "rounds.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/mesh/primitive.h"
 #include "vicinity/robot/urdf_file.h"
@@ -137,7 +138,7 @@ TEST(BodyPoints, SharesAddUpToTheAreaWhateverTheNumberOfPoints) {
 TEST(BodyPoints, KeepTheirDistanceFromEachOther) {
   // Elimination is known to reach 0.7 of the hexagonal packing on average; random points reach
   // 0.01.
-  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(10u); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const RobotModel robot =
         robot_of({primitive::sphere(0.1), primitive::box({0.3, 0.2, 0.1}),
@@ -174,7 +175,7 @@ TEST(BodyPoints, MeasureAreaEvenlyEvenWhereTwoSidesShareTheirPoints) {
   // A plate thinner than the spacing: each end of it must weigh its own area, although points are
   // kept by distance in space and so are half as dense on each side.
   const RobotModel robot = robot_of({primitive::box({0.4, 0.4, 0.001})});
-  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(10u); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     BodyPointOptions options;
     options.total = 2000;

@@ -108,7 +108,7 @@ TEST(ExposedSurface, HoldsAllThatCanBeSeenOfRealArms) {
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
           whole += 0.5 * (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).norm();
         }
-        for (int sample = 0; sample < 120; ++sample) {
+        for (int sample = 0; sample < test::rounds(120); ++sample) {
           const std::size_t t = random() % mesh.triangles.size();
           const Vec3 centre = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
           const Vec3 way = random_vector(random).normalized();
@@ -130,7 +130,7 @@ TEST(ExposedSurface, HoldsAllThatCanBeSeenOfRealArms) {
         }
       }
     }
-    EXPECT_GT(seen, 50);
+    EXPECT_GT(seen, test::rounds(50));
     RecordProperty(robot.name + "_share_of_surface_kept", std::to_string(kept / whole));
     std::cout << robot.name << ": " << kept << " of " << whole << " m² can be reached\n";
   }

@@ -13,6 +13,7 @@
 #include <random>
 
 #include "no_allocation.h"
+#include "rounds.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/teleop/energy_audit.h"
 #include "vicinity/teleop/passivity.h"
@@ -62,7 +63,7 @@ LimiterOptions joints(const Eigen::MatrixXd& damping) {
 }
 
 TEST(DragLimiter, RhoIsNeverBelowTheLargestEigenvalueAndHardlyAbove) {
-  for (int seed = 0; seed < 3000; ++seed) {
+  for (int seed = 0; seed < test::rounds(3000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Engine random(static_cast<std::uint64_t>(seed));
     const auto n = std::uniform_int_distribution<Eigen::Index>(1, axis_capacity)(random);
@@ -83,7 +84,7 @@ TEST(DragLimiter, RhoIsNeverBelowTheLargestEigenvalueAndHardlyAbove) {
 }
 
 TEST(DragLimiter, RhoOfPlainDampingIsNeverBelowEigensLargestEigenvalue) {
-  for (int seed = 0; seed < 3000; ++seed) {
+  for (int seed = 0; seed < test::rounds(3000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Engine random(static_cast<std::uint64_t>(seed));
     const auto n = std::uniform_int_distribution<Eigen::Index>(1, axis_capacity)(random);
@@ -118,7 +119,7 @@ TEST(DragLimiter, ScaledDragIsNeverAboveTheDampingAndDragBelowItIsLeftAlone) {
 }
 
 TEST(DragLimiter, TorqueNeverPushesAndNormsStayWithinTheirLimits) {
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < test::rounds(2000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Engine random(static_cast<std::uint64_t>(seed));
     const bool cartesian = seed % 2 == 0;
@@ -343,7 +344,7 @@ TEST(Passive, AuditNeverGoesNegativeWhereDragJumpsWithinTheDamping) {
     Engine random(5);
     EnergyAudit audit(scalar(damping)), too_high(scalar(damping));
     double x = 0, velocity = 1, drag = 0;
-    for (int k = 0; k < 1'000'000; ++k) {
+    for (int k = 0; k < test::rounds(1'000'000); ++k) {
       const Eigen::VectorXd position = Eigen::VectorXd::Constant(1, x);
       const Eigen::VectorXd force = Eigen::VectorXd::Constant(1, k == 0 ? 0 : -drag * velocity);
       const Eigen::VectorXd more = 1.05 * force;
@@ -356,7 +357,7 @@ TEST(Passive, AuditNeverGoesNegativeWhereDragJumpsWithinTheDamping) {
     }
     EXPECT_TRUE(audit.balance().passive);
     EXPECT_GE(audit.balance().lowest, 0);
-    EXPECT_EQ(audit.balance().records, 999'999U);
+    EXPECT_EQ(audit.balance().records, test::rounds(1'000'000U) - 1);
     // Drag 5 % above the damping: the test can tell, given time between the jumps.
     if (periods_a_jump == 1000) {
       EXPECT_FALSE(too_high.balance().passive);
@@ -405,11 +406,11 @@ void expect_passive(int seed, bool estimated) {
 }
 
 TEST(Passive, StrictLimiterKeepsAnyArmAndAnyFieldPassive) {
-  for (int seed = 0; seed < 40; ++seed) expect_passive(seed, false);
+  for (int seed = 0; seed < test::rounds(40); ++seed) expect_passive(seed, false);
 }
 
 TEST(Passive, StrictLimiterKeepsEstimatedVelocitiesPassive) {
-  for (int seed = 0; seed < 40; ++seed) expect_passive(seed, true);
+  for (int seed = 0; seed < test::rounds(40); ++seed) expect_passive(seed, true);
 }
 
 TEST(Passive, AForceMadeInAShortPeriodIsScaledForTheLongOneItMayActIn) {

@@ -8,6 +8,7 @@
 #include <deque>
 #include <random>
 
+#include "rounds.h"
 #include "vicinity/teleop/limiter.h"
 #include "vicinity/teleop/passivity.h"
 
@@ -51,7 +52,7 @@ class DryMass {
 template <class Drag>
 int still_moving(double mass, int window, const Drag& drag) {
   int moving = 0;
-  for (int seed = 0; seed < 1000; ++seed) {
+  for (int seed = 0; seed < test::rounds(1000); ++seed) {
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> place(0, encoder_step), push(-0.1, 0.1);
     DryMass joint(mass, place(random), push(random));

@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "no_allocation.h"
+#include "rounds.h"
 #include "vicinity/drag/moving_point.h"
 #include "vicinity/mesh/primitive.h"
 #include "vicinity/viscosity/build_field.h"
@@ -127,7 +128,7 @@ TEST_P(FeltByEveryPoint, IsWhatTheJointsGet) {
   const BodyPoints points = points_of(robot);
   const ViscosityField field = layers == LayerShape::sphere ? ranked() : surroundings(layers);
   double felt_in_all = 0;
-  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(6u); ++seed) {
     SCOPED_TRACE(seed);
     TeleoperationOptions options;
     options.memory = named_memory(memory);
@@ -272,7 +273,7 @@ TEST(Tick, FeelsTheSameWithTwoThousandAndFiftyThousandPoints) {
   const RobotModel robot = small_arm();
   Teleoperation few(robot, sample_body_points(robot, {.total = 2000}), ranked(), {});
   Teleoperation many(robot, sample_body_points(robot, {.total = 50'000}), ranked(), {});
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(4u); ++seed) {
     SCOPED_TRACE(seed);
     const Motion motion(seed);
     Output of_few, of_many;
@@ -326,7 +327,7 @@ TEST(Tick, StrictBearsAHandThatTurnsWithEveryUnevenPeriod) {
   const RobotModel robot = small_arm();
   for (const AxisKind axes : {AxisKind::joints, AxisKind::cartesian}) {
     int limited = 0;
-    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::rounds(12u); ++seed) {
       SCOPED_TRACE(std::string(axes == AxisKind::joints ? "joints" : "cartesian") + ", seed " +
                    std::to_string(seed));
       TeleoperationOptions options;
@@ -350,7 +351,7 @@ TEST(Tick, StrictBearsAHandThatTurnsWithEveryUnevenPeriod) {
         limited += output.limiter.limit == DragLimit::damping ? 1 : 0;
       }
     }
-    EXPECT_GT(limited, 10000);
+    EXPECT_GT(limited, test::rounds(10000));
   }
 }
 

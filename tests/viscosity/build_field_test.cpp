@@ -11,6 +11,7 @@
 #include <map>
 
 #include "random_scene.h"
+#include "rounds.h"
 #include "seeds.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/layers/distance_layers.h"
@@ -115,7 +116,7 @@ class LoneObject {
 };
 
 TEST(BuildField, IsThePlainMergeOfItsObjects) {
-  for_each_seed(20, [](std::mt19937& random) {
+  for_each_seed(test::rounds(20), [](std::mt19937& random) {
     Scene scene = random_scene(random, whole(random, 1, 5), 28);
     if (whole(random, 0, 1) == 0) scene.bounds = cut_out(random, 10, 50);
     const ViscosityField field = build_field(scene).field;
@@ -155,7 +156,7 @@ TEST(BuildField, IsThePlainMergeOfItsObjects) {
 }
 
 TEST(BuildField, DoesNotDependOnTheOrderOfObjectsOrTriangles) {
-  for_each_seed(8, [](std::mt19937& random) {
+  for_each_seed(test::rounds(8), [](std::mt19937& random) {
     Scene scene = random_scene(random, 4, 40);
     const ViscosityField field = build_field(scene).field;
     std::shuffle(scene.objects.begin(), scene.objects.end(), random);
@@ -168,7 +169,7 @@ TEST(BuildField, DoesNotDependOnTheOrderOfObjectsOrTriangles) {
 }
 
 TEST(BuildField, DoesNotDependOnTheNumberOfThreads) {
-  for_each_seed(6, [](std::mt19937& random) {
+  for_each_seed(test::rounds(6), [](std::mt19937& random) {
     const Scene scene = random_scene(random, 5, 200);
     const BuildResult one = build_field(scene, {.threads = 1, .progress = {}});
     const BuildResult two = build_field(scene, {.threads = 2, .progress = {}});
@@ -179,7 +180,7 @@ TEST(BuildField, DoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(BuildField, ASmallerWorkspaceIsACutOutOfALargerOne) {
-  for_each_seed(8, [](std::mt19937& random) {
+  for_each_seed(test::rounds(8), [](std::mt19937& random) {
     Scene scene = random_scene(random, 4, 60);
     const ViscosityField all = build_field(scene).field;
     scene.bounds = cut_out(random, 20, 90);
@@ -202,7 +203,7 @@ TEST(BuildField, ASmallerWorkspaceIsACutOutOfALargerOne) {
 }
 
 TEST(BuildField, MovingTheSceneByWholeVoxelsMovesTheField) {
-  for_each_seed(8, [](std::mt19937& random) {
+  for_each_seed(test::rounds(8), [](std::mt19937& random) {
     Scene scene = random_scene(random, 4, 40);
     const ViscosityField field = build_field(scene).field;
     const Vec3 shift(whole(random, -99, 99), whole(random, -99, 99), whole(random, -99, 99));
@@ -226,7 +227,7 @@ TEST(BuildField, MovingTheSceneByWholeVoxelsMovesTheField) {
 }
 
 TEST(BuildField, AutomaticBoundsHoldAllLayersAndStartOnTheGrid) {
-  for_each_seed(8, [](std::mt19937& random) {
+  for_each_seed(test::rounds(8), [](std::mt19937& random) {
     const Scene scene = random_scene(random, 3, 60);
     const ViscosityField field = build_field(scene).field;
     // Alone, so that no other object hides a voxel.

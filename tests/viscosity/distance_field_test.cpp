@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "random_scene.h"
+#include "rounds.h"
 #include "seeds.h"
 #include "surface_distance.h"
 #include "vicinity/layers/distance_layers.h"
@@ -55,7 +56,7 @@ bool in_skin(const FieldSample& sample) {
 }
 
 TEST(DistanceField, DistanceIsNeverMoreThanTheTrueOneAndLittleLess) {
-  for_each_seed(6, [](std::mt19937& random) {
+  for_each_seed(test::rounds(6), [](std::mt19937& random) {
     const Scene scene = distance_scene(random, whole(random, 1, 3), 3, named_coding("paper", 5));
     const ViscosityField field = build_field(scene).field;
     int kept = 0;
@@ -77,7 +78,7 @@ TEST(DistanceField, DistanceIsNeverMoreThanTheTrueOneAndLittleLess) {
 
 TEST(DistanceField, ViscosityIsNeverLessThanThatOfTheTrueDistanceWhereTheCodingIsConvex) {
   const Coding convex{{32, 24, 18, 13, 9, 6, 3.5, 1.5}, 100};
-  for_each_seed(6, [&](std::mt19937& random) {
+  for_each_seed(test::rounds(6), [&](std::mt19937& random) {
     const Scene scene = distance_scene(random, whole(random, 1, 3), 2, convex);
     const ViscosityField field = build_field(scene).field;
     for (int n = 0; n < 4000; ++n) {
@@ -92,7 +93,7 @@ TEST(DistanceField, ViscosityIsNeverLessThanThatOfTheTrueDistanceWhereTheCodingI
 
 TEST(DistanceField, ViscosityIsNeverLessThanThatOfTheTrueDistanceAndAVoxelForAnyFallingCoding) {
   const Coding paper = named_coding("paper", 6);
-  for_each_seed(6, [&](std::mt19937& random) {
+  for_each_seed(test::rounds(6), [&](std::mt19937& random) {
     const Scene scene = distance_scene(random, whole(random, 1, 3), 4, paper);
     const ViscosityField field = build_field(scene).field;
     for (int n = 0; n < 4000; ++n) {
@@ -106,7 +107,7 @@ TEST(DistanceField, ViscosityIsNeverLessThanThatOfTheTrueDistanceAndAVoxelForAny
 }
 
 TEST(DistanceField, ViscosityHasNoStepOutsideTheSkin) {
-  for_each_seed(6, [](std::mt19937& random) {
+  for_each_seed(test::rounds(6), [](std::mt19937& random) {
     const int m = whole(random, 1, 4);
     const Coding coding{{32, 20, 13, 11, 10}, 100};
     const ViscosityField field =
@@ -149,7 +150,7 @@ TEST(DistanceField, TheSkinAndTheInsideAreAsTheyAre) {
 }
 
 TEST(DistanceField, BesideRankedObjectsItIsStillNeverOptimistic) {
-  for_each_seed(6, [](std::mt19937& random) {
+  for_each_seed(test::rounds(6), [](std::mt19937& random) {
     Scene scene = distance_scene(random, 3, 3, {{30, 20, 12, 6, 2}, 100});
     scene.objects[0].layers = LayerShape::sphere;
     const ViscosityField field = build_field(scene).field;
@@ -173,7 +174,7 @@ TEST(DistanceField, BesideRankedObjectsItIsStillNeverOptimistic) {
 }
 
 TEST(DistanceField, TheEdgeOfTheWorkspaceHidesNothing) {
-  for_each_seed(4, [](std::mt19937& random) {
+  for_each_seed(test::rounds(4), [](std::mt19937& random) {
     const Coding convex{{30, 20, 12, 6, 2}, 100};
     Scene scene = distance_scene(random, 1, 3, convex);
     const Box box = std::get<TriangleMesh>(scene.objects[0].shape).bounds();

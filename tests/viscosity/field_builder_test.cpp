@@ -8,6 +8,7 @@
 #include <random>
 
 #include "random_scene.h"
+#include "rounds.h"
 #include "seeds.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/mesh/placement.h"
@@ -44,7 +45,7 @@ Scene scene_in_bounds(std::mt19937& random, int objects, double extent_vox) {
 }
 
 TEST(FieldBuilder, RanksOnlyWhatChangedAndMakesTheSameBytes) {
-  for_each_seed(12, [](std::mt19937& random) {
+  for_each_seed(test::rounds(12), [](std::mt19937& random) {
     Scene scene = scene_in_bounds(random, 5, 150);
     FieldBuilder builder;
     expect_as_built_anew(builder, scene, 5);

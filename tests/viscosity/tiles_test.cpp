@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "rounds.h"
 #include "seeds.h"
 #include "vicinity/layers/ranked_neighbours.h"
 #include "vicinity/mesh/placement.h"
@@ -94,7 +95,7 @@ SceneObject ranked_object(TriangleMesh mesh, LayerShape shape, int m, int q) {
 }
 
 TEST(Tiles, AnObjectAcrossTilesIsRankedAsIfItWereWhole) {
-  for_each_seed(4, [](std::mt19937& random) {
+  for_each_seed(test::rounds(4), [](std::mt19937& random) {
     TriangleMesh mesh = whole(random, 0, 1) == 0 ? primitive::torus(210, real(random, 20, 60), 48)
                                                  : primitive::box({700, 40, 300});
     const Pose pose =

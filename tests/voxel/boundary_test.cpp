@@ -11,6 +11,7 @@
 #include <limits>
 #include <random>
 
+#include "rounds.h"
 #include "sets.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/mesh/primitive.h"
@@ -65,7 +66,7 @@ void expect_exact(const TriangleMesh& mesh) {
 }
 
 TEST(Boundary, AgreesWithSeparatingAxesOnRandomTriangles) {
-  for (unsigned seed = 1; seed <= 400; ++seed) {
+  for (unsigned seed = 1; seed <= test::rounds(400u); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const double reach = seed % 3 == 0 ? 1.5 : seed % 3 == 1 ? 6 : 25;
@@ -79,7 +80,7 @@ TEST(Boundary, AgreesWithSeparatingAxesOnRandomTriangles) {
 }
 
 TEST(Boundary, AgreesWithSeparatingAxesOnTrianglesOfAFineScan) {
-  for (unsigned seed = 1; seed <= 3000; ++seed) {
+  for (unsigned seed = 1; seed <= test::rounds(3000u); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> offset(-0.5, 0.5), origin(-9, 9);
@@ -110,7 +111,7 @@ TEST(Boundary, AgreesWithSeparatingAxesOnLongTriangles) {
 }
 
 TEST(Boundary, AgreesWithSeparatingAxesOnSlivers) {
-  for (unsigned seed = 1; seed <= 200; ++seed) {
+  for (unsigned seed = 1; seed <= test::rounds(200u); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> offset(-12, 12), width(-1, 1);
@@ -124,7 +125,7 @@ TEST(Boundary, AgreesWithSeparatingAxesOnSlivers) {
 }
 
 TEST(Boundary, AgreesWithSeparatingAxesOnGridVerticesAndFlatTriangles) {
-  for (unsigned seed = 1; seed <= 300; ++seed) {
+  for (unsigned seed = 1; seed <= test::rounds(300u); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     std::uniform_int_distribution<int> halves(-16, 16);
@@ -252,7 +253,7 @@ TEST(Boundary, DependsNeitherOnTheOrderOfTrianglesNorOnThreads) {
 }
 
 TEST(Boundary, ProbeMarksASubsetOfExact) {
-  for (unsigned seed = 1; seed <= 300; ++seed) {
+  for (unsigned seed = 1; seed <= test::rounds(300u); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> offset(-9, 9);

@@ -14,6 +14,7 @@
 #include <random>
 #include <string>
 
+#include "rounds.h"
 #include "sets.h"
 #include "vicinity/mesh/mesh_file.h"
 #include "vicinity/mesh/primitive.h"
@@ -294,7 +295,7 @@ TEST_P(CleanMesh, IsInnerWhereItsWindingNumberSaysSo) {
   std::size_t wrong = 0, inner = 0;
   // Some voxels only: the plain sum takes a good part of a millisecond.
   std::uniform_int_distribution<std::size_t> skip(
-      0, std::max<std::size_t>(1, v.boundary.count() / 200));
+      0, std::max<std::size_t>(1, v.boundary.count() / test::rounds(200)));
   std::size_t left = 0;
   visit(v.boundary.box(), [&](const VoxelIndex& index) {
     if (v.boundary.contains(index) || left-- > 0) return;
