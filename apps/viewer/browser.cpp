@@ -42,13 +42,13 @@ Browser::Browser(const std::filesystem::path& program) : profile_(new_profile())
   }
   to_ = down[1];
   from_ = up[0];
-  std::vector<std::string> words = {program.string(), "--headless=new", "--remote-debugging-pipe",
-                                    "--user-data-dir=" + profile_.string(), "--no-first-run",
-                                    "--disable-background-networking", "--disable-component-update",
-                                    "--disable-sync", "--hide-scrollbars", "--mute-audio",
-                                    // Draws by the processor where there is no graphics card.
-                                    "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-                                    "--ignore-gpu-blocklist", "about:blank"};
+  std::vector<std::string> words = {
+      program.string(), "--headless=new", "--remote-debugging-pipe",
+      "--user-data-dir=" + profile_.string(), "--no-first-run", "--disable-background-networking",
+      "--disable-component-update", "--disable-sync", "--hide-scrollbars", "--mute-audio",
+      // Draws by the processor where there is no graphics card.
+      "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
+      "--disable-gpu-rasterization", "about:blank"};
   // Its sandbox cannot be set up by root, as in a container; the page it opens is our own.
   if (geteuid() == 0) words.insert(words.begin() + 1, "--no-sandbox");
   std::vector<char*> argv;

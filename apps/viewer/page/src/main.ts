@@ -9,6 +9,11 @@ import "./style/layout.css";
 import "./style/controls.css";
 import "./style/panels.css";
 import { session } from "./app/live_session";
+import { element } from "./dom/element";
 
 session.connection.open();
-void import("./page");
+import("./page").catch((error: unknown) => {
+  session.connection.end();
+  const why = error instanceof Error ? error.message : String(error);
+  document.body.prepend(element("p", { class: "unusable", role: "alert" }, `This browser cannot show the page: ${why}.`));
+});

@@ -340,7 +340,7 @@ function showSnapshot(snapshot: Snapshot, now: number): void {
     const { field, robot } = workplace.hello;
     if (!replay.charts) sayReason(reasonLine(snapshot.reason, field, robot));
   }
-  if (!replay.charts) charts.showLive(snapshot, now, stage.frameTimes.at(-1) ?? 0, pause);
+  if (!replay.charts) charts.showLive(snapshot, now, stage.frameTimes.at(-1), pause);
 }
 
 function hold(): void {

@@ -27,9 +27,12 @@ export class Charts {
     this.record.clear();
   }
 
-  /** Once a frame; draws ten times a second. */
-  /** @param pause  leaves the view so much time between two drawings [ms] */
-  showLive(snapshot: Snapshot, now: number, frameTime: number, pause: number): void {
+  /**
+   * Once a frame; draws ten times a second.
+   * @param frameTime of the view's latest frame [ms]; undefined: there was none before it
+   * @param pause leaves the view so much time between two drawings [ms]
+   */
+  showLive(snapshot: Snapshot, now: number, frameTime: number | undefined, pause: number): void {
     if (now - this.drawnAt < Math.max(period_ms, pause)) return;
     this.drawnAt = now;
     const latest = this.record.latest;
@@ -39,7 +42,11 @@ export class Charts {
     this.chart.showValues(values, {
       text: statusText(snapshot.status),
       look: statusClass(snapshot.status),
-      detail: `${limiterText(snapshot)} · ${snapshot.missed + snapshot.skipped} late ticks · frame ${secondsText(frameTime / 1000)}`,
+      detail: [
+        limiterText(snapshot),
+        `${snapshot.missed + snapshot.skipped} late ticks`,
+        ...(frameTime === undefined ? [] : [`frame ${secondsText(frameTime / 1000)}`]),
+      ].join(" · "),
     });
   }
 

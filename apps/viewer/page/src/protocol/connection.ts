@@ -64,7 +64,14 @@ export class Connection {
       this.enter("open");
     });
     socket.addEventListener("message", (event: MessageEvent<unknown>) => this.receive(event.data));
-    socket.addEventListener("close", () => this.lose());
+    socket.addEventListener("close", this.lose);
+  }
+
+  /** For good: nobody will listen. */
+  end(): void {
+    this.held = [];
+    this.socket?.removeEventListener("close", this.lose);
+    this.socket?.close();
   }
 
   /** From now on, and first of all what has come before: once all listeners are in place. */
@@ -159,7 +166,7 @@ export class Connection {
     for (const listen of this.listeners.get(message.type) ?? []) listen(message);
   }
 
-  private lose(): void {
+  private readonly lose = (): void => {
     this.enter("lost");
     const unanswered = [...this.waiting.values(), ...this.backlog.map(({ waiting }) => waiting)];
     this.waiting.clear();
@@ -167,5 +174,5 @@ export class Connection {
     for (const { refuse } of unanswered) refuse(new Refusal("the server went away"));
     setTimeout(() => this.open(), this.pause);
     this.pause = Math.min(8000, 1.6 * this.pause);
-  }
+  };
 }

@@ -30,11 +30,12 @@ const directions: Record<ViewDirection, Vector3> = {
 };
 
 /** With smooth edges where a graphics card draws them; for a processor they cost more than they show. */
-function contextOf(canvas: HTMLCanvasElement): WebGL2RenderingContext | undefined {
+function contextOf(canvas: HTMLCanvasElement): WebGL2RenderingContext {
   const context =
     canvas.getContext("webgl2", { alpha: true, antialias: true, failIfMajorPerformanceCaveat: true }) ??
     canvas.getContext("webgl2", { alpha: true, antialias: false });
-  return context ?? undefined; // three.js then says that there is none
+  if (!context) throw new Error("it has no WebGL 2; turn graphics acceleration on, or try another one");
+  return context;
 }
 
 export class Stage {

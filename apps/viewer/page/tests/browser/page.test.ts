@@ -247,6 +247,14 @@ test("keys list themselves, and turn dark into light, which can be read and is r
   }
 });
 
+test("a browser without WebGL says so", async () => {
+  const page = await (await (await theBrowser()).newContext()).newPage();
+  await page.addInitScript(() => (HTMLCanvasElement.prototype.getContext = () => null));
+  await page.goto(server.address);
+  expect(await page.getByRole("alert").textContent()).toContain("no WebGL 2");
+  await page.context().close();
+});
+
 test("a page of another origin is refused", async () => {
   // A site that allows itself everything.
   const site = createServer((_, answer) => answer.setHeader("Content-Type", "text/html").end("<!doctype html>"));

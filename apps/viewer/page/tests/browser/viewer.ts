@@ -63,6 +63,7 @@ export class Server {
 
   static start(args: readonly string[], folder = scratchFolder()): Promise<Server> {
     const child = spawn(program, ["serve", ...args, "--port", "0", "--folder", folder]);
+    process.on("exit", () => child.kill()); // a test that failed has not stopped it
     return new Promise((resolve, reject) => {
       let said = "";
       const listen = (chunk: Buffer): void => {
