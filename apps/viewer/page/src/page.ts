@@ -331,9 +331,9 @@ function showSnapshot(snapshot: Snapshot, now: number): void {
   handle.group.visible = !replay.hidesLiveArm;
   handle.move(tool, leader.isLeading ? leader.place : new Vector3().fromArray(snapshot.pulledTo));
   if (leader.isLeading) stage.draw();
+  if (stage.isResting) return;
   // Where the processor draws, words and charts cost more than the view: they are drawn less often.
   const pause = 4000 * usualStep;
-  if (stage.isResting) return;
   if (now - panelsAt > pause) {
     panelsAt = now;
     drive.update(snapshot);

@@ -16,8 +16,8 @@ import {
 import { rankColour } from "../colour/rank_palette";
 import type { Field } from "../protocol/hello";
 import type { ShellPart } from "../protocol/shapes";
-import { firstQuadHit, type QuadHit, type Ray } from "./quad";
 import type { Cut } from "./material";
+import { firstQuadHit, type QuadHit, type Ray } from "./quad";
 import { shellMaterial, type HiddenObjects } from "./shell_material";
 
 interface Shell {

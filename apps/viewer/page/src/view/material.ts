@@ -6,7 +6,7 @@
 // longer than all else about opening the page.
 import { Color, DoubleSide, ShaderMaterial, Vector4, type BufferGeometry, type DataTexture } from "three";
 
-/** A plane (normal, constant) as shaders read it: what lies behind it is not drawn. */
+/** A plane in W, unit normal and constant [m], as shaders read it: what lies behind it is not drawn. */
 export interface Cut {
   value: Vector4;
 }
@@ -53,7 +53,7 @@ const litVertex = /* glsl */ `
     gl_Position = projectionMatrix * viewMatrix * place;
   }`;
 
-// The room's light: a pale sky, a darker floor, and a lamp over the viewer's left shoulder.
+// The room's light, in W: a pale sky, a darker floor, and a lamp over the left shoulder of whoever looks from the front.
 const litFragment = /* glsl */ `
   uniform vec3 colour;
   uniform float opacity;
@@ -84,6 +84,7 @@ const sliceFragment = /* glsl */ `
     if (gl_FragColor.a < 0.5) discard;
   }`;
 
+/** What of a material differs from a thing to the next: by default opaque, and hidden by what is before it. */
 export interface Paint {
   opacity?: number;
   depthTest?: boolean;
@@ -108,6 +109,7 @@ export class PlainMaterial extends ShaderMaterial {
     });
   }
 
+  /** @param colour as CSS writes it; @param opacity 0..1; without it, what it was */
   setColour(colour: string, opacity?: number): void {
     (this.uniforms.colour!.value as Color).set(colour);
     if (opacity !== undefined) this.uniforms.opacity!.value = opacity;

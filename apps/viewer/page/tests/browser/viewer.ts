@@ -22,7 +22,7 @@ export const hotCellStart = "0.08,-0.15,0,2.416,0,-0.695,0";
 
 declare global {
   interface Window {
-    /** What the page tells scripts (src/main.ts). */
+    /** What the page tells scripts (src/page.ts). */
     vicinity: {
       hello(): Hello;
       snapshot(): Snapshot;
@@ -39,7 +39,11 @@ for (const needed of [program, browserPath]) {
 }
 
 const scratch: string[] = [];
-process.on("exit", () => scratch.forEach((folder) => rmSync(folder, { recursive: true, force: true })));
+const children: ChildProcess[] = [];
+process.on("exit", () => {
+  for (const child of children) child.kill(); // a test that failed has not stopped its server
+  for (const folder of scratch) rmSync(folder, { recursive: true, force: true });
+});
 
 export function scratchFolder(): string {
   const folder = mkdtempSync(join(tmpdir(), "vicinity-page-"));
@@ -63,7 +67,7 @@ export class Server {
 
   static start(args: readonly string[], folder = scratchFolder()): Promise<Server> {
     const child = spawn(program, ["serve", ...args, "--port", "0", "--folder", folder]);
-    process.on("exit", () => child.kill()); // a test that failed has not stopped it
+    children.push(child);
     return new Promise((resolve, reject) => {
       let said = "";
       const listen = (chunk: Buffer): void => {
