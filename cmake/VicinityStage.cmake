@@ -14,6 +14,7 @@ function(vicinity_stage NAME)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${NAME} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)  # "STAGE/own_header.h"
   target_link_libraries(${target} PUBLIC ${STAGE_SEES} ${STAGE_PUBLIC} PRIVATE ${STAGE_PRIVATE})
   vicinity_compile_rules(${target})
 endfunction()

@@ -247,18 +247,21 @@ void Viewer::answer_build(ClientId client, const Command& command) {
   }
   if (builder_.joinable()) builder_.join();
   builder_ = std::thread([this, client, id = command.id, document = std::move(document)] {
+    const auto fails = [&](SharedBytes why) {
+      building_.store(false);
+      server_->send(client, std::move(why));
+    };
     try {
       build(client, id, document);
     } catch (const Error& error) {
-      server_->send(client, error_message(id, error));
+      fails(error_message(id, error));
     } catch (const std::bad_alloc&) {
-      server_->send(client, error_message(id,
-                                          "there is too little memory for that field; a larger "
-                                          "voxel_size or smaller bounds help"));
+      fails(error_message(id,
+                          "there is too little memory for that field; a larger voxel_size or "
+                          "smaller bounds help"));
     } catch (const std::exception& error) {
-      server_->send(client, error_message(id, error.what()));
+      fails(error_message(id, error.what()));
     }
-    building_.store(false);
   });
 }
 
@@ -293,6 +296,7 @@ void Viewer::build(ClientId client, std::uint32_t id, const SceneDocument& docum
     const std::lock_guard lock(state_);
     workplace_ = std::make_shared<const Workplace>(std::move(next));
   }
+  building_.store(false);  // before the page hears of it, which may ask for the next one at once
   tell_done(client, id, report_json(built.report));
   server_->broadcast(hello_message());
   server_->broadcast(points_message());

@@ -4,7 +4,6 @@
 #include "vicinity/layers/distance_layers.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/whole_loops.h"
 #include "sheet_distances.h"
 #include "sheet_lists.h"
 #include "surface_features.h"
@@ -93,7 +93,7 @@ DistanceLayers SurfaceDistances::layers(const VoxelSet& boundary, const VoxelSet
       [&] { return SheetDistances(parts.features, boundary, inner, parts.m, parts.q, layers); });
   const std::int32_t first = within.lo.k >> sheet_shift;
   const std::int32_t last = (within.hi.k - 1) >> sheet_shift;
-  tbb::parallel_for(first, last + 1, [&](std::int32_t sheet) {
+  whole::parallel_for(first, last + 1, [&](std::int32_t sheet) {
     of_thread.local().fill(sheet, parts.of_sheets[sheet]);
   });
   return layers;

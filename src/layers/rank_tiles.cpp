@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/whole_loops.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/layers/layer_bricks.h"
 
@@ -59,7 +59,7 @@ void rank_tiles(const VoxelSet& boundary, const VoxelSet& inner, const ShapingEl
   if (q == 0 || boundary.box().empty()) return;
   const std::vector<VoxelBox> tiles = tiles_of(boundary.box().grown(q * element.radius()));
   tbb::enumerable_thread_specific<LayerBricks> memory;
-  tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
+  whole::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
     LayerBricks& bricks = memory.local();
     bricks.start(tiles[t], element.radius(), q);
     bricks.put_boundary(boundary);

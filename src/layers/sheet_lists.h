@@ -4,8 +4,6 @@
 /// Which features of a surface have to do with which sheet of voxels.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/whole_loops.h"
 #include "nearest_region.h"
 #include "surface_features.h"
 #include "vicinity/voxel/huge_pages.h"
@@ -25,8 +24,8 @@ class SheetLists {
  public:
   explicit SheetLists(const SurfaceFeatures& features) {
     HugeVector<Range> ranges(features.size());
-    tbb::parallel_for(std::size_t{0}, ranges.size(),
-                      [&](std::size_t f) { ranges[f] = range_of(features, f); });
+    whole::parallel_for(std::size_t{0}, ranges.size(),
+                        [&](std::size_t f) { ranges[f] = range_of(features, f); });
     Range all;
     for (const Range& range : ranges) {
       all.first = std::min(all.first, range.first);

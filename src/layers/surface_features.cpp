@@ -3,14 +3,14 @@
 
 #include "surface_features.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
 #include <tuple>
 #include <utility>
+
+#include "geometry/whole_loops.h"
 
 namespace vicinity {
 namespace {
@@ -34,12 +34,12 @@ double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) 
 SurfaceFeatures::SurfaceFeatures(const TriangleMesh& mesh, const Workspace& workspace, double reach)
     : reach_(reach) {
   points_.resize(mesh.vertices.size());
-  tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t v) {
+  whole::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t v) {
     points_[v] = workspace.to_grid(mesh.vertices[v]) - Vec3::Constant(0.5);
   });
   faces_.resize(mesh.triangles.size());
-  tbb::parallel_for(std::size_t{0}, faces_.size(),
-                    [&](std::size_t t) { faces_[t] = make_face(mesh.triangles[t]); });
+  whole::parallel_for(std::size_t{0}, faces_.size(),
+                      [&](std::size_t t) { faces_[t] = make_face(mesh.triangles[t]); });
   join_edges();
   join_vertices();
   for (const std::uint32_t v : used_vertices_) bounds_.extend(points_[v]);
@@ -91,7 +91,7 @@ void SurfaceFeatures::join_edges() {
   const auto sides_of = [&](std::size_t a) {
     return std::span<Side>(sides.data() + start[a], start[a + 1] - start[a]);
   };
-  tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t a) {
+  whole::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t a) {
     const std::span<Side> of_a = sides_of(a);
     std::sort(of_a.begin(), of_a.end(), [](const Side& s, const Side& t) {
       return std::tie(s.b, s.face) < std::tie(t.b, t.face);

@@ -4,7 +4,6 @@
 #include "vicinity/mesh/stl_file.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
 
@@ -25,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/whole_loops.h"
 #include "mesh_error.h"
 #include "vertex_weld.h"
 #include "vicinity/geometry/error.h"
@@ -283,7 +283,7 @@ TriangleMesh read_ascii_parts(std::ifstream& file, const std::filesystem::path& 
     part->text = {};
     return part;
   };
-  tbb::parallel_pipeline(
+  whole::parallel_pipeline(
       parts.size(),
       tbb::make_filter<void, Part*>(tbb::filter_mode::serial_in_order, read) &
           tbb::make_filter<Part*, Part*>(tbb::filter_mode::parallel, parse) &

@@ -4,7 +4,6 @@
 #include "vicinity/viscosity/build_field.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -18,6 +17,7 @@
 #include <ranges>
 #include <utility>
 
+#include "geometry/whole_loops.h"
 #include "merge.h"
 #include "object_voxel_array.h"
 #include "object_work.h"
@@ -186,7 +186,7 @@ std::vector<std::string> remarks_on(const ObjectWork& work, const FieldObject& d
 template <class Step>
 void for_each_work(std::vector<ObjectWork>& works, Step&& step) {
   std::vector<std::exception_ptr> errors(works.size());
-  tbb::parallel_for(std::size_t{0}, works.size(), [&](std::size_t w) {
+  whole::parallel_for(std::size_t{0}, works.size(), [&](std::size_t w) {
     try {
       step(works[w]);
     } catch (...) {

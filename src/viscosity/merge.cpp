@@ -10,7 +10,6 @@
 
 #include "merge.h"
 
-#include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -23,6 +22,7 @@
 #include <tuple>
 
 #include "code_masks.h"
+#include "geometry/whole_loops.h"
 #include "image_layers.h"
 #include "sparse_layer.h"
 #include "vicinity/layers/distance_layers.h"
@@ -578,7 +578,7 @@ MergedField merge(const Workspace& workspace, const std::vector<FieldObject>& ob
   const std::int64_t last = std::int64_t{dims.j} * dims.k;
   const auto tokens = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()) * 4;
   std::int64_t next = 0, done = 0;
-  tbb::parallel_pipeline(
+  whole::parallel_pipeline(
       tokens,
       tbb::make_filter<void, std::shared_ptr<Row>>(
           tbb::filter_mode::serial_in_order,

@@ -4,7 +4,6 @@
 #include "object_voxel_array.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 #include <utility>
 
 #include "code_masks.h"
+#include "geometry/whole_loops.h"
 #include "vicinity/layers/distance_layers.h"
 #include "vicinity/layers/layer_bricks.h"
 #include "vicinity/voxel/voxeliser.h"
@@ -73,7 +73,7 @@ void put_in_order(std::size_t count, ObjectVoxelArray& array,
   // Tokens bound how many drafts wait.
   const auto tokens = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()) * 2;
   std::size_t next = 0, done = 0;
-  tbb::parallel_pipeline(
+  whole::parallel_pipeline(
       tokens, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
                                                   [&](tbb::flow_control& flow) {
                                                     if (next == count) flow.stop();

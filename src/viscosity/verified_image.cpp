@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -234,6 +235,8 @@ VerifiedImage verify_image(std::span<const std::byte> image, const std::string& 
   try {
     read_meta(reader.section(0), verified);
     verified.records = records_of(verified.objects);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& e) {
     reader.refuse("damaged", fmt::format("a description that does not read ({})", e.what()));
   }

@@ -3,13 +3,12 @@
 
 #include "vicinity/voxel/boundary.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <optional>
 
 #include "few_voxels.h"
+#include "geometry/whole_loops.h"
 #include "row_axes.h"
 #include "slab_writer.h"
 #include "slabbed_mesh.h"
@@ -121,7 +120,7 @@ class TriangleMarker {
 
 VoxelSet exact_boundary(const SlabbedMesh& mesh) {
   VoxelSet voxels(mesh.box());
-  tbb::parallel_for(mesh.slab_begin(), mesh.slab_end(), [&](std::int32_t slab) {
+  whole::parallel_for(mesh.slab_begin(), mesh.slab_end(), [&](std::int32_t slab) {
     TriangleMarker marker(voxels, slab, mesh.reach());
     for (const std::uint32_t t : mesh.triangles_in(slab)) marker.mark(mesh.corners(t));
   });

@@ -3,12 +3,12 @@
 
 #include "free_regions.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <numeric>
 #include <utility>
+
+#include "geometry/whole_loops.h"
 
 namespace vicinity {
 namespace {
@@ -227,8 +227,9 @@ FreeRegions::FreeRegions(const VoxelSet& boundary) : boundary_(boundary), box_(b
   const BlockIndex last = block_of({box_.hi.i - 1, box_.hi.j - 1, box_.hi.k - 1});
   size_ = {last.i - lo_.i + 1, last.j - lo_.j + 1, last.k - lo_.k + 1};
   slabs_.resize(static_cast<std::size_t>(size_.k));
-  tbb::parallel_for(std::int32_t{0}, size_.k,
-                    [&](std::int32_t s) { slabs_[static_cast<std::size_t>(s)] = scan(lo_.k + s); });
+  whole::parallel_for(std::int32_t{0}, size_.k, [&](std::int32_t s) {
+    slabs_[static_cast<std::size_t>(s)] = scan(lo_.k + s);
+  });
 
   std::vector<std::uint32_t> parents;
   for (Slab& slab : slabs_) {

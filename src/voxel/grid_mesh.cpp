@@ -4,13 +4,12 @@
 #include "grid_mesh.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <limits>
 #include <string>
 
+#include "geometry/whole_loops.h"
 #include "vicinity/geometry/error.h"
 
 namespace vicinity {
@@ -54,12 +53,12 @@ GridMesh::GridMesh(const TriangleMesh& mesh, const Workspace& workspace)
   vertices_ = vertices;
   if (mesh.triangles.empty()) return;
   using Range = tbb::blocked_range<std::size_t>;
-  tbb::parallel_for(Range(0, vertices->size(), vertices_a_task), [&](const Range& range) {
+  whole::parallel_for(Range(0, vertices->size(), vertices_a_task), [&](const Range& range) {
     for (std::size_t v = range.begin(); v < range.end(); ++v) {
       (*vertices)[v] = workspace.to_grid(mesh.vertices[v]);
     }
   });
-  const Extent extent = tbb::parallel_reduce(
+  const Extent extent = whole::parallel_reduce(
       Range(0, triangles_.size(), vertices_a_task), Extent{},
       [&](const Range& range, Extent sum) {
         for (std::size_t t = range.begin(); t < range.end(); ++t) {

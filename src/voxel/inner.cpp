@@ -4,7 +4,6 @@
 #include "vicinity/voxel/inner.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +17,7 @@
 
 #include "consistent_winding.h"
 #include "free_regions.h"
+#include "geometry/whole_loops.h"
 #include "inside.h"
 #include "mesh_slice.h"
 #include "open_edges.h"
@@ -54,7 +54,7 @@ std::vector<int> closed_winding_numbers(const GridMesh& mesh,
   std::vector<int> numbers(voxels.size());
   using Range = tbb::blocked_range<std::uint32_t>;
   const auto triangles = static_cast<std::uint32_t>(mesh.triangle_count());
-  tbb::parallel_for(Range(0, triangles, 1 << 12), [&](const Range& range) {
+  whole::parallel_for(Range(0, triangles, 1 << 12), [&](const Range& range) {
     for (std::uint32_t t = range.begin(); t < range.end(); ++t) {
       const std::array<Vec3, 3> corners = mesh.corners(t);
       const auto [low, high] = std::minmax({corners[0].z(), corners[1].z(), corners[2].z()});
@@ -79,7 +79,7 @@ VoxelSet closed_inner(const VoxelSet& boundary, AreInner&& are_inner) {
   VoxelSet inner(boundary.box());
   const FreeRegions regions(boundary);
   const std::vector<char> is_inner = are_inner(regions.voxels());
-  tbb::parallel_for(regions.slab_begin(), regions.slab_end(), [&](std::int32_t slab) {
+  whole::parallel_for(regions.slab_begin(), regions.slab_end(), [&](std::int32_t slab) {
     regions.visit_slab(
         slab, is_inner,
         [&](std::int32_t i_begin, std::int32_t i_end, std::int32_t j) {
@@ -100,7 +100,7 @@ VoxelSet raster_inner(const SlabbedMesh& mesh, const VoxelSet& boundary) {
   VoxelSet inner(boundary.box());
   const VoxelBox& box = boundary.box();
   if (box.empty()) return inner;
-  tbb::parallel_for(box.lo.k >> 3, ((box.hi.k - 1) >> 3) + 1, [&](std::int32_t slab) {
+  whole::parallel_for(box.lo.k >> 3, ((box.hi.k - 1) >> 3) + 1, [&](std::int32_t slab) {
     std::vector<std::vector<double>> rows(static_cast<std::size_t>(box.hi.j - box.lo.j));
     for (std::int32_t k = slab * 8; k < slab * 8 + 8; ++k) {
       for (const std::uint32_t t : mesh.triangles_in(slab)) {
@@ -164,7 +164,7 @@ std::vector<char> Inside::are_inner(const std::vector<VoxelIndex>& voxels) const
     for (std::size_t v = 0; v < voxels.size(); ++v) inner[v] = numbers[v] != 0;
     return inner;
   }
-  tbb::parallel_for(std::size_t{0}, voxels.size(), [&](std::size_t v) {
+  whole::parallel_for(std::size_t{0}, voxels.size(), [&](std::size_t v) {
     inner[v] = by_solid_angle_ ? by_solid_angle_->is_inner(voxels[v])
                                : closed_winding_number(*slabs_, voxels[v]) != 0;
   });

@@ -4,7 +4,6 @@
 #include "open_edges.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,8 @@
 #include <numeric>
 #include <tuple>
 #include <utility>
+
+#include "geometry/whole_loops.h"
 
 namespace vicinity {
 namespace {
@@ -34,7 +35,7 @@ template <class EdgesOf>
 std::vector<Edge> cancelled(std::size_t count, std::size_t vertices, EdgesOf&& edges_of) {
   using Range = tbb::blocked_range<std::size_t>;
   const auto visit = [&](auto&& edge) {
-    tbb::parallel_for(Range(0, count, triangles_a_task), [&](const Range& range) {
+    whole::parallel_for(Range(0, count, triangles_a_task), [&](const Range& range) {
       for (std::size_t n = range.begin(); n < range.end(); ++n) edges_of(n, edge);
     });
   };
@@ -51,7 +52,7 @@ std::vector<Edge> cancelled(std::size_t count, std::size_t vertices, EdgesOf&& e
   });
   const std::size_t pieces = vertices / triangles_a_task + 1;
   std::vector<std::vector<Edge>> left(pieces);
-  tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+  whole::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
     for (std::size_t low = vertices * piece / pieces; low < vertices * (piece + 1) / pieces;
          ++low) {
       const auto begin =

@@ -10,8 +10,6 @@
 
 #include "open_inner.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -23,6 +21,7 @@
 #include <vector>
 
 #include "free_regions.h"
+#include "geometry/whole_loops.h"
 #include "moment_tree.h"
 #include "solid_angle.h"
 
@@ -301,7 +300,7 @@ VoxelSet OpenInner::inner(const VoxelSet& boundary) const {
   const OpenWinding& winding = *winding_;
   VoxelSet inner(boundary.box());
   const BlockIndex lo = inner.blocks().lo(), size = inner.blocks().size();
-  tbb::parallel_for(lo.k, lo.k + size.k, [&](std::int32_t k) {
+  whole::parallel_for(lo.k, lo.k + size.k, [&](std::int32_t k) {
     for (std::int32_t j = lo.j; j < lo.j + size.j; ++j) {
       for (std::int32_t i = lo.i; i < lo.i + size.i; ++i) {
         const BlockIndex b{i, j, k};

@@ -3,11 +3,11 @@
 
 #include "slabbed_mesh.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <numeric>
+
+#include "geometry/whole_loops.h"
 
 namespace vicinity {
 
@@ -33,7 +33,7 @@ SlabbedMesh::SlabbedMesh(const TriangleMesh& mesh, const Workspace& workspace)
     }
   };
   std::vector<std::vector<std::size_t>> next(pieces);
-  tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+  whole::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
     next[piece].resize(slabs);
     visit(piece, [&](std::size_t slab, std::uint32_t) { ++next[piece][slab]; });
   });
@@ -48,7 +48,7 @@ SlabbedMesh::SlabbedMesh(const TriangleMesh& mesh, const Workspace& workspace)
     starts_[slab + 1] = at;
   }
   listed_.resize(starts_.back());
-  tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+  whole::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
     visit(piece, [&](std::size_t slab, std::uint32_t t) { listed_[next[piece][slab]++] = t; });
   });
 }
