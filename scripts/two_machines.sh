@@ -41,6 +41,11 @@ end() {
   rm -rf "$folder"
 }
 trap end EXIT
+alive() {
+  kill -0 "${pids[$1]}" 2>/dev/null && return
+  echo "two_machines.sh: the $1 ended before its time" >&2
+  exit 1
+}
 
 # The hot cell, a little coarser; in the second and third, the risers stand elsewhere.
 sed 's/^voxel_size: .*/voxel_size: 0.008/' scenes/hot_cell.yaml >"$folder/0.yaml"
@@ -57,8 +62,11 @@ done
 mkfifo "$folder/way" "$folder/events"
 "$tests/two_machines_relay" $master $slave "$RANDOM" <"$folder/way" >"$folder/relay.txt" &
 pids[relay]=$!
-exec 3>"$folder/way"
-until grep -q ready "$folder/relay.txt"; do sleep 0.1; done
+exec 3<>"$folder/way"  # both ways: waits for no reader
+until grep -q ready "$folder/relay.txt"; do
+  alive relay
+  sleep 0.1
+done
 ip -n $master address add 10.77.0.1/24 dev link
 ip -n $slave address add 10.77.0.2/24 dev link
 for side in $master $slave; do ip -n $side link set dev link up; done
@@ -107,7 +115,7 @@ seconds=$(awk "BEGIN { print int(60 * $minutes) }")
     <"$folder/events" >"$folder/arm.txt"
 ) &
 pids[arm]=$!
-exec 4>"$folder/events"
+exec 4<>"$folder/events"
 sleep 3  # it builds its own fields
 start slave
 start master
@@ -115,6 +123,8 @@ start master
 begin=$SECONDS
 next_way=0 next_scene=15 changes=0 scene=0
 while ((SECONDS - begin < seconds)); do
+  alive relay
+  alive arm
   if ((SECONDS - begin >= next_way)); then
     delays=(0 20 50 100 200) losses=(0 1 2 5 10)
     delay=${delays[RANDOM % 5]} loss=${losses[RANDOM % 5]}
