@@ -98,7 +98,9 @@ void Viewer::answer_shell(ClientId client, const Command& command) {
   if (shown_generation_ != now->generation) shells_.clear();
   shown_generation_ = now->generation;
   const int finest = step_for(now->field, most_faces), usual = step_for(now->field, usual_faces);
-  const int wanted = static_cast<int>(std::bit_ceil(static_cast<unsigned>(asked)));
+  constexpr int coarsest = 1 << 15;  // its number has 16 bits
+  const int wanted =
+      std::min(static_cast<int>(std::bit_ceil(static_cast<unsigned>(asked))), coarsest);
   const int step = asked == 0 ? usual : std::max(finest, wanted);
   auto& shells = shells_[step];
   if (shells == nullptr) {
@@ -207,7 +209,7 @@ void Viewer::answer_open_recording(ClientId client, const Command& command) {
 void Viewer::answer_follow(ClientId client, const Command& command) {
   const nlohmann::json json = read_json(command);
   if (!json.contains("recording") || json["recording"].is_null()) {
-    loop_.follow(nullptr);
+    loop_.follow(nullptr, command.drives_before);
     return tell_done(client, command.id, nlohmann::ordered_json::object());
   }
   std::shared_ptr<const Recorded> recorded;
@@ -234,7 +236,7 @@ void Viewer::answer_follow(ClientId client, const Command& command) {
                 .speed = std::clamp(number_in(json, "speed", 1), -fastest_playing, fastest_playing),
                 .loop = truth_in(json, "loop", false),
                 .playing = truth_in(json, "playing", true)});
-  loop_.follow(std::move(following));
+  loop_.follow(std::move(following), command.drives_before);
   tell_done(client, command.id, nlohmann::ordered_json::object());
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -24,7 +25,8 @@ bool is_plain_name(std::string_view name);
 /// ending.
 class Folder {
  public:
-  explicit Folder(std::filesystem::path path) : path_(std::move(path)) {}
+  explicit Folder(std::filesystem::path path)
+      : path_(std::move(path)), scratch_files_(static_cast<std::uint64_t>(now().count())) {}
 
   const std::filesystem::path& path() const noexcept { return path_; }
   std::filesystem::path scene(const std::string& name) const;      ///< .yaml, .yml
@@ -44,8 +46,13 @@ class Folder {
   nlohmann::ordered_json list(const std::vector<std::string>& more_recordings) const;
 
  private:
+  // In a container that is started anew, so are process numbers: names go by the time too.
+  static std::chrono::nanoseconds now() {
+    return std::chrono::system_clock::now().time_since_epoch();
+  }
+
   std::filesystem::path path_;
-  std::atomic<std::uint64_t> scratch_files_{0};
+  std::atomic<std::uint64_t> scratch_files_;
 };
 
 }  // namespace vicinity::viewer

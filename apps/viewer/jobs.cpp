@@ -3,6 +3,7 @@
 
 #include "jobs.h"
 
+#include <exception>
 #include <utility>
 
 namespace vicinity::viewer {
@@ -36,7 +37,11 @@ void Jobs::work() {
     const std::function<void()> job = std::move(waiting_.front());
     waiting_.pop_front();
     lock.unlock();
-    job();
+    try {
+      job();
+    } catch (const std::exception&) {
+      // It had nobody left to tell, or no memory to tell it with: it ends, the program does not.
+    }
   }
 }
 

@@ -22,7 +22,7 @@ class Jobs {
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
 
-  /// False where the queue is full. @param job  must not throw
+  /// False where the queue is full. @param job  where it throws, it has told whom it may concern
   bool add(std::function<void()> job);
 
  private:

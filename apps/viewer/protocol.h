@@ -99,7 +99,8 @@ class ByteWriter {
 struct Command {
   CommandType type{};
   std::uint32_t id = 0;
-  std::string_view message;  ///< whole: offsets count from its start
+  std::string_view message;         ///< whole: offsets count from its start
+  std::uint64_t drives_before = 0;  ///< DRIVEs of all pages that had come when it came
 
   /// A number at an offset; nothing where the message ends before it.
   template <class T>

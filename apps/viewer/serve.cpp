@@ -25,6 +25,7 @@
 #include "vicinity/viscosity/field_file.h"
 #include "vicinity/viscosity/scene_file.h"
 #include "viewer.h"
+#include "web/gate.h"
 #include "web/web_server.h"
 
 namespace vicinity::viewer {
@@ -108,7 +109,7 @@ AxisVector start_of(const ServeOptions& options, const RobotModel& robot, bool p
   return q;
 }
 
-// As the words of the command line have it; read_arm() has checked them where there is a robot.
+// As the words of the command line have it.
 FeelWords words_of(const cli::ArmOptions& options) {
   return {.memory = options.memory,
           .direction = options.direction,
@@ -125,11 +126,13 @@ ViewerArm arm_of(const ServeOptions& options, const Workplace& workplace) {
   ViewerArm shown;
   shown.words = words_of(said);
   if (said.robot.empty() && !scene_has_robot) {
+    const cli::Arm arm = cli::bodiless_arm(said);
     shown.probe = true;
     shown.robot = probe_robot(workplace.field.workspace());
     shown.points = probe_points(shown.robot);
     shown.link_meshes = surfaces_of(shown.robot);
-    shown.rate = said.rate.value_or(shown.rate);
+    shown.rate = arm.rate;
+    shown.like = arm.teleoperation;
   } else {
     cli::Arm arm = cli::read_arm(said);
     shown.link_meshes = looks_of(said, arm.robot);

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 
 #include "hello.h"
 #include "page_files.h"
@@ -31,8 +30,11 @@ std::vector<bool> non_empty(const std::vector<TriangleMesh>& meshes) {
 }
 
 std::string text_of(const std::filesystem::path& path) {
+  std::string text(std::filesystem::file_size(path), '\0');
   std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return text;
 }
 
 // Deeper than any command; a tree that is copied and written by recursion must not be deeper.
@@ -137,6 +139,10 @@ void Viewer::file_wanted(ClientId connection, const std::string& name) {
       }
     } catch (const Error& refused) {
       response = sentence(400, refused.what());
+    } catch (const std::bad_alloc&) {
+      response = sentence(500, "there is too little memory for that file");
+    } catch (const std::exception& failed) {
+      response = sentence(500, failed.what());
     }
     server_->respond(connection, std::move(response));
   });
@@ -218,6 +224,7 @@ HttpResponse Viewer::store_upload(const std::string& name, const std::filesystem
 
 void Viewer::opened(ClientId client) {
   const bool taken = quick_->add([this, client] {
+    const std::lock_guard change(changing_);  // or a newer HELLO may overtake this one
     server_->send(client, hello_message());
     server_->send(client, points_message());
     server_->set_rate(client, snapshots_per_s);
@@ -242,6 +249,7 @@ void Viewer::message(ClientId client, std::string_view payload) {
   try {
     const Command command = read_command(payload);
     if (command.type == CommandType::drive) return drive(client, command);
+    if (command.type == CommandType::follow) driver_ = 0;  // from now on no page pulls
     if (has_json(command.type) && nests_too_deep(command.payload())) {
       throw Error({.what = "the command's JSON is nested too deep",
                    .expected = fmt::format("at most {} levels", deepest_json)});
@@ -269,12 +277,13 @@ void Viewer::hand_on(ClientId client, std::string message) {
     ++waiting;
   }
   Jobs& jobs = is_slow(read_command(message).type) ? *slow_ : *quick_;
-  const bool taken = jobs.add([this, client, message = std::move(message)] {
-    answer(client, message);
-    const std::lock_guard lock(state_);
-    const auto waiting = waiting_.find(client);
-    if (waiting != waiting_.end()) --waiting->second;
-  });
+  const bool taken =
+      jobs.add([this, client, message = std::move(message), drives = loop_.drives()] {
+        answer(client, message, drives);
+        const std::lock_guard lock(state_);
+        const auto waiting = waiting_.find(client);
+        if (waiting != waiting_.end()) --waiting->second;
+      });
   if (taken) return;
   {
     const std::lock_guard lock(state_);
@@ -283,8 +292,9 @@ void Viewer::hand_on(ClientId client, std::string message) {
   throw Error({.what = "too many commands wait for their answer"});
 }
 
-void Viewer::answer(ClientId client, const std::string& message) {
-  const Command command = read_command(message);
+void Viewer::answer(ClientId client, const std::string& message, std::uint64_t drives_before) {
+  Command command = read_command(message);
+  command.drives_before = drives_before;
   try {
     (this->*answer_for(command.type))(client, command);
   } catch (const Error& error) {

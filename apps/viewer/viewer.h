@@ -86,7 +86,7 @@ class Viewer final : public Site {
 
   void drive(ClientId client, const Command& command);
   void hand_on(ClientId client, std::string message);
-  void answer(ClientId client, const std::string& message);
+  void answer(ClientId client, const std::string& message, std::uint64_t drives_before);
   Answer answer_for(CommandType type) const;
 
   void answer_slice(ClientId client, const Command& command);

@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <assimp/DefaultIOSystem.h>
 #include <algorithm>
 #include <array>
 #include <assimp/Importer.hpp>
@@ -175,10 +176,38 @@ void for_each_triangle(const aiScene& scene, bool keep_root_transform, const aut
   });
 }
 
+/// The mesh's own folder and what lies below it: other files that a mesh names (buffers of a glTF,
+/// materials of an OBJ) are looked for nowhere else. A mesh that came from somewhere does not say
+/// what is read here.
+class OwnFolder final : public Assimp::DefaultIOSystem {
+ public:
+  explicit OwnFolder(const std::filesystem::path& mesh)
+      : folder_(std::filesystem::absolute(mesh).lexically_normal().parent_path()) {}
+
+  bool Exists(const char* file) const override {
+    return holds(file) && DefaultIOSystem::Exists(file);
+  }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    return holds(file) && std::string_view(mode).starts_with('r')
+               ? DefaultIOSystem::Open(file, mode)
+               : nullptr;
+  }
+
+ private:
+  bool holds(const char* file) const {
+    const auto within =
+        std::filesystem::absolute(file).lexically_normal().lexically_relative(folder_);
+    return !within.empty() && *within.begin() != "..";
+  }
+
+  std::filesystem::path folder_;
+};
+
 [[noreturn]] void import_and_send(int pipe, const std::filesystem::path& path,
                                   std::string_view extension, const Limits& limits) {
   try {
     Assimp::Importer importer;
+    importer.SetIOHandler(new OwnFolder(path));  // the importer's from now on
     const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
     if (scene == nullptr || scene->mRootNode == nullptr) complain(pipe, importer.GetErrorString());
     // The root of a DAE or FBX scene has no transform in the file. What assimp puts there is the

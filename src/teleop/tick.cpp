@@ -128,10 +128,7 @@ Teleoperation::Teleoperation(const RobotModel& robot, BodyPoints points,
   if (options_.tool_link < 0) options_.tool_link = links - 1;
 }
 
-Teleoperation::~Teleoperation() {
-  delete offered_.load();
-  delete given_up_.load();
-}
+Teleoperation::~Teleoperation() = default;
 
 int Teleoperation::joint_count() const noexcept { return static_cast<int>(q_.size()); }
 
@@ -329,28 +326,20 @@ AxisMatrix Teleoperation::tool_map() const noexcept {
 }
 
 void Teleoperation::take_new_field() noexcept {
-  // The place for the old field must be free; whoever offers a new one has just cleared it.
-  if (offered_.load(std::memory_order_relaxed) == nullptr ||
-      given_up_.load(std::memory_order_acquire) != nullptr) {
-    return;
-  }
-  std::unique_ptr<FieldView> next(offered_.exchange(nullptr, std::memory_order_acquire));
-  if (next == nullptr) return;
-  const Workspace &from = view_->field.workspace(), &to = next->field.workspace();
+  if (!views_.waits()) return;
+  const Workspace from = view_->field.workspace();
+  views_.take(view_);
+  const Workspace& to = view_->field.workspace();
   if (from.origin == to.origin && from.voxel_size == to.voxel_size) {
     body_->look_again();
   } else {
     body_->restart();
   }
   ++counts_.fields_taken;
-  given_up_.store(view_.release(), std::memory_order_release);
-  view_ = std::move(next);
 }
 
 void Teleoperation::swap_field(const ViscosityField& field) {
-  auto next = std::make_unique<FieldView>(field);
-  delete given_up_.exchange(nullptr, std::memory_order_acquire);
-  delete offered_.exchange(next.release(), std::memory_order_acq_rel);  // one that was never taken
+  views_.offer(std::make_unique<FieldView>(field));
 }
 
 }  // namespace vicinity

@@ -86,13 +86,8 @@ void add_device(const ArmOptions& options, Arm& arm) {
 }
 
 Arm fit_out(RobotLoad load, const SceneRobot& placed, const ArmOptions& options) {
-  Arm arm;
+  Arm arm = bodiless_arm(options);
   arm.X_WB = placed.X_WB;
-  arm.teleoperation.memory = named_memory(options.memory);
-  arm.teleoperation.direction = direction_from(options.direction);
-  arm.teleoperation.traversal = traversal_from(options.traversal);
-  if (!options.master.empty()) arm.teleoperation.master = master_from(options.master);
-  add_device(options, arm);
   arm.robot = std::move(load.robot);
   arm.remarks = std::move(load.remarks);
   if (!placed.tool.empty()) {
@@ -112,6 +107,16 @@ Arm fit_out(RobotLoad load, const SceneRobot& placed, const ArmOptions& options)
 }
 
 }  // namespace
+
+Arm bodiless_arm(const ArmOptions& options) {
+  Arm arm;
+  arm.teleoperation.memory = named_memory(options.memory);
+  arm.teleoperation.direction = direction_from(options.direction);
+  arm.teleoperation.traversal = traversal_from(options.traversal);
+  if (!options.master.empty()) arm.teleoperation.master = master_from(options.master);
+  add_device(options, arm);
+  return arm;
+}
 
 Arm read_arm(const ArmOptions& options) {
   const SceneRobot placed = placed_robot(options);

@@ -48,6 +48,10 @@ struct Arm {
 /// Errors: throws Error for a file that cannot be used and for words that fit nothing.
 Arm read_arm(const ArmOptions& options);
 
+/// How an arm feels and how often it ticks, for whoever has a robot of his own: without robot,
+/// points and place. Errors: as read_arm().
+Arm bodiless_arm(const ArmOptions& options);
+
 /// The demo's arm in the hot cell, feeling as the options say. Errors: as read_arm().
 Arm hot_cell_arm(const ArmOptions& options);
 

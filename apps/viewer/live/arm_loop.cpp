@@ -97,11 +97,13 @@ bool ArmLoop::drive(const Drive& drive) {
   next.R_WT.normalize();
   if (drive.mode != DriveMode::joints) next.q = AxisVector::Zero(torque_.size());
   drives_.give();
+  drives_given_.fetch_add(1, std::memory_order_relaxed);
   return true;
 }
 
-void ArmLoop::follow(std::unique_ptr<Following> following) {
+void ArmLoop::follow(std::unique_ptr<Following> following, std::uint64_t drives_before) {
   const std::lock_guard lock(giving_);
+  if (drives() != drives_before) return;
   Drive& next = drives_.to_fill();
   next = standing_at(AxisVector::Zero(torque_.size()));
   if (following != nullptr) {
@@ -151,8 +153,9 @@ void ArmLoop::period(double now_s, double late_us) noexcept {
     missed_before_ += before.missed_deadlines;
     refused_before_ += before.refused;
   }
-  followings_.take(following_);
+  // A recording is given before the drive that asks for it: in this order none is missed.
   if (drives_.take()) drive_ = drives_.taken();
+  followings_.take(following_);
   if (drive_.mode == DriveMode::follow) advance_recording(period_s);
   hand_.move(drive_, kinematics_, torque_, period_s);
   kinematics_.update(hand_.q().data(), hand_.qd().data(), X_WB_);

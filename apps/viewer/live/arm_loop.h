@@ -20,10 +20,10 @@
 
 #include "live/drive.h"
 #include "live/hand.h"
-#include "live/handover.h"
 #include "live/latest.h"
 #include "live/snapshot.h"
 #include "replay/joint_trajectory.h"
+#include "vicinity/teleop/handover.h"
 #include "vicinity/teleop/tick.h"
 
 namespace vicinity::viewer {
@@ -58,8 +58,11 @@ class ArmLoop {
 
   /// The newest counts. Errors: false for a number that is not finite or a size that does not fit.
   bool drive(const Drive& drive);
-  /// Along a recording; null: no more.
-  void follow(std::unique_ptr<Following> following);
+  /// How many drives there were.
+  std::uint64_t drives() const noexcept { return drives_given_.load(std::memory_order_relaxed); }
+  /// Along a recording; null: no more. A drive that came meanwhile counts, and not this.
+  /// @param drives_before  drives() when it was asked for
+  void follow(std::unique_ptr<Following> following, std::uint64_t drives_before);
   /// Another field, or another way of feeling: memory and energy account start anew.
   /// Errors: throws Error for options that do not fit the robot; then nothing has changed.
   void feel(const ViscosityField& field, std::uint32_t generation,
@@ -113,6 +116,7 @@ class ArmLoop {
   // Between the threads.
   std::mutex giving_;  // among those that give; the loop never takes it
   Latest<Drive> drives_;
+  std::atomic<std::uint64_t> drives_given_{0};
   Handover<Following> followings_;
   Handover<Feeling> feelings_;
   Teleoperation* newest_ = nullptr;  // of all that were offered: the one in use, or soon in use

@@ -148,9 +148,9 @@ void Hand::move_joints(const AxisVector& target, const AxisVector& torque,
   step_to(wanted_, period_s);
 }
 
-// Exactly there, where the joints' speeds allow it.
+// Exactly there, where the joints' limits and speeds allow it.
 void Hand::follow(const AxisVector& target, double period_s) noexcept {
-  wanted_ = target - q_;
+  wanted_ = target.cwiseMax(lower_).cwiseMin(upper_) - q_;
   lag_ = wanted_.norm();
   wanted_ /= period_s;
   step_to(wanted_, period_s);
@@ -170,7 +170,8 @@ void Hand::step_to(const AxisVector& wanted, double period_s) noexcept {
     if (speed * share > fastest_[c]) share = fastest_[c] / speed;
   }
   for (Eigen::Index c = 0; c < q_.size(); ++c) {
-    const double next = std::clamp(q_[c] + share * wanted[c] * period_s, lower_[c], upper_[c]);
+    double next = std::clamp(q_[c] + share * wanted[c] * period_s, lower_[c], upper_[c]);
+    if (!std::isfinite(next)) next = q_[c];  // what is wanted is so far that no number says it
     qd_[c] = (next - q_[c]) / period_s;
     q_[c] = next;
   }

@@ -71,6 +71,7 @@ struct Connection {
   std::string head;  ///< as far as it has come
   Outbox outbox;
   bool wants_to_write = false;  ///< the socket was full
+  bool said_all = false;        ///< nothing more will come from it
 
   // An upload.
   std::string upload_name;

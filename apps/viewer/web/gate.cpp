@@ -3,7 +3,8 @@
 
 #include "web/gate.h"
 
-#include <algorithm>
+#include <arpa/inet.h>
+
 #include <string_view>
 
 namespace vicinity::viewer {
@@ -16,7 +17,7 @@ std::string_view without_port(std::string_view host) {
 
 bool names_loopback(std::string_view host) {
   const std::string_view name = without_port(host);
-  return name == "localhost" || name == "[::1]" || name.starts_with("127.");
+  return name == "[::1]" || (name != "::1" && is_loopback(std::string(name)));
 }
 
 // As long for a wrong token as for a right one, whatever of it is right.
@@ -30,6 +31,13 @@ bool same(std::string_view token, std::string_view other) {
 }
 
 }  // namespace
+
+// Numbers only: "127.0.0.1.example" is somebody's name, which may lead anywhere.
+bool is_loopback(const std::string& address) {
+  in_addr numbers{};
+  if (inet_pton(AF_INET, address.c_str(), &numbers) == 1) return ntohl(numbers.s_addr) >> 24 == 127;
+  return address == "localhost" || address == "::1";
+}
 
 std::optional<std::string> why_refused(const HttpRequest& request, const std::string& token,
                                        bool on_loopback) {

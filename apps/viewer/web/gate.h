@@ -11,6 +11,9 @@
 
 namespace vicinity::viewer {
 
+/// Whether an address is one that only this machine reaches.
+bool is_loopback(const std::string& address);
+
 /// Whether a request comes from the server's own page, or from no page at all.
 ///
 /// Every browser states the origin of a page that opens a WebSocket or sends an upload, and pages

@@ -62,10 +62,6 @@ std::string query_value(const HttpRequest& request, const std::string& key) {
 
 }  // namespace
 
-bool is_loopback(const std::string& address) {
-  return address == "localhost" || address == "::1" || address.starts_with("127.");
-}
-
 /// All of it but posting belongs to the thread that runs it.
 class WebServer::Loop {
  public:
@@ -213,6 +209,12 @@ class WebServer::Loop {
     std::array<char, turn_bytes> buffer;
     const ssize_t count = ::recv(client.socket.get(), buffer.data(), buffer.size(), 0);
     if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)) return;
+    if (count == 0 && (client.state == Connection::State::awaiting_response ||
+                       client.state == Connection::State::leaving)) {
+      // It has said all it had to, and still listens.
+      client.said_all = true;
+      return watch(client);
+    }
     if (count <= 0) return leave(client);
     client.heard_s = now_;
     std::string_view bytes(buffer.data(), static_cast<std::size_t>(count));
@@ -381,15 +383,23 @@ class WebServer::Loop {
     if (gone(client)) return;
     const Outbox::Sent sent = client.outbox.send_to(client.socket.get());
     if (sent != Outbox::Sent::none) client.sent_s = now_;
-    if (sent == Outbox::Sent::broken || client.outbox.overfull()) return leave(client);
+    const bool overfull = client.state == Connection::State::open && client.outbox.overfull();
+    if (sent == Outbox::Sent::broken || overfull) return leave(client);
     if (sent == Outbox::Sent::all && client.state == Connection::State::leaving) {
+      if (client.said_all) return leave(client);
       ::shutdown(client.socket.get(), SHUT_WR);
       client.state = Connection::State::lingering;
     }
     const bool more = sent != Outbox::Sent::all;
     if (more == client.wants_to_write) return;
     client.wants_to_write = more;
-    watch(client.socket.get(), client.id, EPOLLIN | (more ? EPOLLOUT : 0u), EPOLL_CTL_MOD);
+    watch(client);
+  }
+
+  void watch(const Connection& client) const {
+    watch(client.socket.get(), client.id,
+          (client.said_all ? 0u : EPOLLIN) | (client.wants_to_write ? EPOLLOUT : 0u),
+          EPOLL_CTL_MOD);
   }
 
   // A WebSocket is none any more.
@@ -442,6 +452,8 @@ class WebServer::Loop {
   void look_after_clients() {
     for (const auto& [id, client] : clients_) {
       if (gone(*client)) continue;
+      // A ping waits behind what is being sent, and its answer too.
+      if (!client->outbox.empty()) client->heard_s = now_;
       const bool silent = now_ > client->heard_s + options_.silence_s;
       const bool stuck = !client->outbox.empty() && now_ > client->sent_s + options_.silence_s;
       const bool slow_head = client->state == Connection::State::reading_head &&

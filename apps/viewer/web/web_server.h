@@ -36,9 +36,6 @@ struct WebOptions {
   double ping_s = 5;
 };
 
-/// Whether an address is one that only this machine reaches.
-bool is_loopback(const std::string& address);
-
 class WebServer {
  public:
   /// Listens from now on; run() serves. Errors: throws Error where the address is none, or cannot

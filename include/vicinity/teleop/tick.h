@@ -13,7 +13,6 @@
 ///   Output  torques, force at the tool, master force (eq. 8-10), the reason, status
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -25,6 +24,7 @@
 #include "vicinity/robot/forward_kinematics.h"
 #include "vicinity/robot/robot_model.h"
 #include "vicinity/teleop/energy_audit.h"
+#include "vicinity/teleop/handover.h"
 #include "vicinity/teleop/limiter.h"
 #include "vicinity/teleop/master_force.h"
 #include "vicinity/teleop/velocity_estimator.h"
@@ -182,9 +182,9 @@ class Teleoperation {
   bool started_ = false;
   Counts counts_;
 
-  // The field in use belongs to the tick's thread; the others change hands whole.
+  // The field in use belongs to the tick's thread; others change hands whole.
   std::unique_ptr<FieldView> view_;
-  std::atomic<FieldView*> offered_{nullptr}, given_up_{nullptr};
+  Handover<FieldView> views_;
 };
 
 }  // namespace vicinity
