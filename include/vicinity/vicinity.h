@@ -38,11 +38,11 @@ extern "C" {
  * vicinity_swap_field(), which another thread may call while one ticks. */
 typedef struct vicinity_arm vicinity_arm;
 
-/* What became of a tick. From VICINITY_DEADLINE_MISSED on the force is zero, and what follows grows
- * back smoothly. */
+/* What became of a tick. From VICINITY_DEADLINE_MISSED on the force is zero. With a limiter, what
+ * follows grows back smoothly; without one it is back at once. */
 typedef enum vicinity_status {
   VICINITY_OK = 0,
-  VICINITY_STARTED,             /* the first tick, or the first after a refused one: no drag */
+  VICINITY_STARTED,             /* the first tick: no drag */
   VICINITY_BEYOND_JOINT_LIMITS, /* drag as usual */
   VICINITY_OUTSIDE_FIELD,       /* nothing to feel */
   VICINITY_DEADLINE_MISSED,     /* more than longest_period_s since the last tick */

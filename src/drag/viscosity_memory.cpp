@@ -4,6 +4,7 @@
 #include "vicinity/drag/viscosity_memory.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "vicinity/geometry/error.h"
@@ -33,6 +34,27 @@ MemoryWeights named_memory(std::string_view name) {
                .what = "no such preset",
                .found = "'" + std::string(name) + "'",
                .expected = "none, sustained, fading, short or rising"});
+}
+
+const MemoryWeights& checked(const MemoryWeights& weights) {
+  if (weights.k < 1 || weights.k > memory_capacity) {
+    throw Error({.where = "memory",
+                 .what = "so many viscosities cannot be remembered",
+                 .found = std::to_string(weights.k),
+                 .expected = "1 to " + std::to_string(memory_capacity)});
+  }
+  double sum = 0;
+  for (int i = 0; i < weights.k; ++i) {
+    const double alpha = weights.alpha[static_cast<std::size_t>(i)];
+    sum += alpha;
+    if (alpha >= 0 && std::isfinite(sum)) continue;
+    throw Error({.where = "memory",
+                 .what = "weight " + std::to_string(i + 1) + " is none",
+                 .found = std::to_string(alpha),
+                 .expected = "a finite number, zero or more"});
+  }
+  if (sum > 0) return weights;
+  throw Error({.where = "memory", .what = "no weight is above zero"});
 }
 
 }  // namespace vicinity

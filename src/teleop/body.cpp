@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -81,10 +82,11 @@ Teleoperation::FieldView::FieldView(const ViscosityField& of) : field(of), clear
 Teleoperation::Body::Body(BodyPoints points, std::size_t link_count,
                           const TeleoperationOptions& options)
     : points_(std::move(points)),
-      weights_(options.memory),
+      weights_(checked(options.memory)),
       traversal_(options.traversal),
       closing_(options.direction == DragDirection::closing),
       motion_(link_count),
+      reach_(link_count, 0),
       link_drag_(link_count, Matrix6::Zero()),
       links_(points_.links.size()),
       clusters_(points_.clusters.size()),
@@ -94,7 +96,12 @@ Teleoperation::Body::Body(BodyPoints points, std::size_t link_count,
       remembers_(points_.x.size(), 0),
       towards_x_(closing_ ? points_.x.size() : 0, 0.f),
       towards_y_(towards_x_),
-      towards_z_(towards_x_) {}
+      towards_z_(towards_x_) {
+  for (const BodyPoints::LinkRange& range : points_.links) {
+    double& reach = reach_[static_cast<std::size_t>(range.link)];
+    reach = std::max(reach, static_cast<double>(range.sphere.centre.norm() + range.sphere.radius));
+  }
+}
 
 void Teleoperation::Body::restart() noexcept {
   std::fill(clusters_.begin(), clusters_.end(), ClusterState{});
@@ -103,9 +110,10 @@ void Teleoperation::Body::restart() noexcept {
   moved_ = false;
 }
 
-bool Teleoperation::Body::move(const ForwardKinematics& kinematics,
-                               double longest_jump_m) noexcept {
+bool Teleoperation::Body::move(const ForwardKinematics& kinematics, double longest_jump_m,
+                               double voxel_size) noexcept {
   bool jumped = false;
+  const double longest_way = std::min(longest_jump_m, (key_span / 2 - 2) * voxel_size);
   for (std::size_t link = 0; link < motion_.size(); ++link) {
     LinkMotion& motion = motion_[link];
     const Pose X_WL = kinematics.X_WL(link);
@@ -117,7 +125,9 @@ bool Teleoperation::Body::move(const ForwardKinematics& kinematics,
     motion.w_L = X_WL.linear().transpose() * motion.w_WL;
     motion.turned = (X_WL.linear() - motion.last_X_WL.linear()).norm();
     const Vec3 way = X_WL.translation() - motion.last_X_WL.translation();
-    jumped |= !(way.norm() <= longest_jump_m);
+    // The norm of a difference of turns is the square root of 2 times what a point 1 m from the
+    // axis goes.
+    jumped |= !(way.norm() + std::numbers::sqrt2 / 2 * motion.turned * reach_[link] <= longest_way);
   }
   moved_ = true;
   if (jumped) restart();

@@ -42,9 +42,9 @@ class Teleoperation::Body {
   void look_again() noexcept { look_again_ = true; }
 
   /// Where the links are and how they move, from this tick on; the last poses are kept for the
-  /// paths. False, and the points start anew, where a link's origin went farther than that: no
-  /// motion.
-  bool move(const ForwardKinematics& kinematics, double longest_jump_m) noexcept;
+  /// paths. False, and the points start anew, where a point may have gone farther than that, or
+  /// farther than its key can tell at this voxel size: no motion.
+  bool move(const ForwardKinematics& kinematics, double longest_jump_m, double voxel_size) noexcept;
 
   /// Moves every point along its path and sums the drag up by link.
   void feel(const FieldView& view) noexcept;
@@ -131,6 +131,7 @@ class Teleoperation::Body {
   bool closing_;
 
   std::vector<LinkMotion> motion_;  // by link
+  std::vector<double> reach_;       // by link: no point is farther from its origin [m]
   std::vector<Matrix6> link_drag_;  // by link
   std::vector<LinkState> links_;    // by link with points
   std::vector<ClusterState> clusters_;

@@ -50,21 +50,28 @@ AuditStatus EnergyAudit::record(double time_s, const AxisVectorView& positions,
     const AxisVector way = positions - position_;
     const double elapsed_s = time_s - time_s_;
     if (elapsed_s > 0) {
-      drag_.add(-force_.dot(way));
-      device_.add(way.dot(damping_.lazyProduct(way)) / elapsed_s);
-      balance_.drag = drag_.value();
-      balance_.device = device_.value();
-      const double total = balance_.drag + balance_.device;
-      balance_.lowest = std::min(balance_.lowest, total);
-      balance_.lowest_drag = std::min(balance_.lowest_drag, balance_.drag);
-      // Each term is a dot product of n rounded products, or n of those: (2n + 4) roundings of its
-      // size at most.
-      const double rounding = (2 * static_cast<double>(way.size()) + 4) *
-                              std::numeric_limits<double>::epsilon() *
-                              (drag_.size() + device_.size());
-      if (total < -rounding) balance_.passive = false;
-      ++balance_.records;
-      status = AuditStatus::recorded;
+      EnergySum drag = drag_, device = device_;
+      drag.add(-force_.dot(way));
+      device.add(way.dot(damping_.lazyProduct(way)) / elapsed_s);
+      if (!std::isfinite(drag.size()) || !std::isfinite(device.size())) {
+        status = lose(AuditStatus::not_finite);
+      } else {
+        drag_ = drag;
+        device_ = device;
+        balance_.drag = drag_.value();
+        balance_.device = device_.value();
+        const double total = balance_.drag + balance_.device;
+        balance_.lowest = std::min(balance_.lowest, total);
+        balance_.lowest_drag = std::min(balance_.lowest_drag, balance_.drag);
+        // Each term is a dot product of n rounded products, or n of those: (2n + 4) roundings of
+        // its size at most.
+        const double rounding = (2 * static_cast<double>(way.size()) + 4) *
+                                std::numeric_limits<double>::epsilon() *
+                                (drag_.size() + device_.size());
+        if (!(total >= -rounding)) balance_.passive = false;
+        ++balance_.records;
+        status = AuditStatus::recorded;
+      }
     } else if (elapsed_s < 0 || !way.isZero(0)) {
       // What happened meanwhile is unknown, but it can start again from here.
       status = lose(AuditStatus::time_did_not_advance);

@@ -148,7 +148,7 @@ DragLimiter::DragLimiter(const LimiterOptions& options)
       force_limit_(options.force_limit ? positive(*options.force_limit, "the force limit")
                                        : infinity),
       period_s_(positive(options.period_s, "the sample period")),
-      ramp_step_(period_s_ / positive(options.ramp_s, "the ramp time")),
+      ramp_s_(positive(options.ramp_s, "the ramp time")),
       longest_hold_(options.longest_hold) {
   const AxisMatrix damping =
       checked_axis_matrix(options.damping, "drag limiter: damping", Definiteness::definite);
@@ -271,7 +271,7 @@ LimiterOutput DragLimiter::limit(const AxisMatrixView& drag, const AxisVectorVie
     if (asked[i] != 0) at_most(torque_limits_[i] / std::abs(asked[i]), DragLimit::torque);
   }
 
-  ramp_ = std::min(1.0, ramp_ + ramp_step_);
+  ramp_ = std::min(1.0, ramp_ + std::min(spacing_s, period_s_) / ramp_s_);
   output.ramp = ramp_;
   output.scale = ramp_ * scale;
   output.torque = -output.scale * asked;

@@ -52,6 +52,18 @@ Eigen::Index checked_axes(const RobotModel& robot) {
   return n;
 }
 
+BodyPoints of_robot(BodyPoints points, const RobotModel& robot) {
+  for (const BodyPoints::LinkRange& range : points.links) {
+    if (range.link >= 0 && static_cast<std::size_t>(range.link) < robot.links.size()) continue;
+    throw Error({.where = "body points",
+                 .what = "they are those of another robot",
+                 .found = "points of link " + std::to_string(range.link),
+                 .expected = "links of '" + robot.name + "', which has " +
+                             std::to_string(robot.links.size())});
+  }
+  return points;
+}
+
 void check_positive(const char* what, double value) {
   if (value > 0 && std::isfinite(value)) return;
   throw Error({.where = what, .what = "is not a positive number", .found = std::to_string(value)});
@@ -97,7 +109,8 @@ Teleoperation::Teleoperation(const RobotModel& robot, BodyPoints points,
       handle_velocity_(
           {.longest_window_s = plain_difference, .noise_band = Eigen::VectorXd::Zero(3)}),
       audit_(audited_damping(robot, options)),
-      body_(std::make_unique<Body>(std::move(points), robot.links.size(), options)),
+      body_(
+          std::make_unique<Body>(of_robot(std::move(points), robot), robot.links.size(), options)),
       tree_(std::make_unique<TreeDrag>(robot)),
       q_(AxisVector::Zero(axes_of(robot))),
       qd_(AxisVector::Zero(axes_of(robot))),
@@ -159,6 +172,7 @@ Status Teleoperation::tick(const Input& input, Output& output) noexcept {
   body_->feel(*view_);
   carry(output);
   output.status = limit(input, heard, output);
+  if (output.status == Status::not_finite) return rest(Status::not_finite, input, output);
   account(input, output);
   return output.status;
 }
@@ -179,8 +193,8 @@ Status Teleoperation::hear(const Input& input) noexcept {
   qd_ = velocity_.velocity();
   if (input.qd != nullptr && !strict(options_)) {
     qd_ = Eigen::Map<const Eigen::VectorXd>(input.qd, n);
-    if (!qd_.allFinite()) return Status::not_finite;
   }
+  if (!qd_.allFinite()) return Status::not_finite;  // positions apart by more than a number holds
   if (!started_) {
     started_ = true;
     qd_.setZero();
@@ -204,7 +218,7 @@ bool Teleoperation::move(const Input& input) noexcept {
     const AxisVector tool = kinematics_.p_WL(static_cast<std::size_t>(options_.tool_link));
     handle_velocity_.measure(input.time_s, tool);
   }
-  return body_->move(kinematics_, options_.longest_jump_m);
+  return body_->move(kinematics_, options_.longest_jump_m, view_->field.workspace().voxel_size);
 }
 
 void Teleoperation::carry(Output& output) noexcept {
@@ -242,6 +256,10 @@ Status Teleoperation::limit(const Input& input, Status heard, Output& output) no
     scale = output.limiter.scale;
   }
   output.torque = drag_.lazyProduct(qd_);
+  if (!output.torque.allFinite() || !output.tool.force.allFinite() ||
+      !output.tool.moment.allFinite()) {
+    return Status::not_finite;
+  }
   output.torque *= -scale;
   if (!limiter_) output.device_force = output.torque;
   output.tool.force *= scale;

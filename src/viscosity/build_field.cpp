@@ -95,11 +95,16 @@ void check_usable(const ObjectWork& work, double h) {
   const Vec3 size = bounds.sizes();
   const double reach =
       std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
-  if (area / (h * h) <= most_voxels && reach / h <= farthest_voxel) return;
+  // What lies beyond the scene's bounds is ranked too, and arrays are as large as an object.
+  const double regions = ((size / (64 * h)).array() + 1).prod();
+  if (area / (h * h) <= most_voxels && reach / h <= farthest_voxel && regions <= most_regions) {
+    return;
+  }
   throw Error({.what = "too large for this voxel size",
                .found = fmt::format("{:.6g} x {:.6g} x {:.6g} m, up to {:.6g} m from the origin",
                                     size.x(), size.y(), size.z(), reach),
-               .expected = fmt::format("at most {:g} voxels on the surface", most_voxels),
+               .expected = fmt::format("at most {:g} voxels on the surface and {:g} in its box",
+                                       most_voxels, most_regions * 64 * 64 * 64),
                .hint = "the right units, or larger voxels"});
 }
 
@@ -375,6 +380,7 @@ BuildResult FieldBuilder::build_in_arena(const Scene& scene, const BuildOptions&
     progress.onward(index_of(work), 1);
   });
   workspace = Workspace::covering(scene.bounds.value_or(bounds_around(works, h)), h);
+  check_region_count(workspace);
   if (kept_ && !same_grid(kept_->workspace, workspace)) {
     for_each_work(works, [&](ObjectWork& work) {
       if (std::exchange(work.array, nullptr)) read(work);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -28,6 +29,7 @@ class CodeMasks {
   void clear() noexcept { count_ = 0; }
   /// Adds a code that is higher than all before.
   void push(VoxelCode code, const BrickBits& mask) noexcept {
+    assert(count_ < most);
     codes_[count_] = code;
     masks_[count_++] = mask;
   }

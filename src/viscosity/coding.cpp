@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "vicinity/geometry/error.h"
 
@@ -31,19 +32,21 @@ void check_coding(const Coding& coding, int q, const std::string& where) {
                  .expected = "one viscosity for each rank",
                  .hint = "more values, a smaller q, or coding: jnd"});
   }
-  const auto is_viscosity = [](double mu) { return std::isfinite(mu) && mu >= 0; };
+  // Body points carry their drag in single precision.
+  constexpr double most = std::numeric_limits<float>::max();
+  const auto is_viscosity = [](double mu) { return mu >= 0 && mu <= most; };
   for (std::size_t n = 0; n < coding.mu.size(); ++n) {
     if (is_viscosity(coding.mu[n])) continue;
     throw Error({.where = where,
                  .what = fmt::format("value {} of the coding is not a viscosity", n + 1),
                  .found = fmt::format("{}", coding.mu[n]),
-                 .expected = "a finite number, zero or more"});
+                 .expected = fmt::format("zero to {:.3g}", most)});
   }
   if (!is_viscosity(coding.skin)) {
     throw Error({.where = where,
                  .what = "the skin is not a viscosity",
                  .found = fmt::format("{}", coding.skin),
-                 .expected = "a finite number, zero or more"});
+                 .expected = fmt::format("zero to {:.3g}", most)});
   }
 }
 

@@ -76,21 +76,31 @@ std::vector<VoxelRecord> records_of(const std::vector<FieldObject>& objects) {
   return records;
 }
 
+VoxelIndex regions_along(const Workspace& workspace) noexcept {
+  const VoxelIndex& dims = workspace.dims;
+  return {(dims.i + 63) >> 6, (dims.j + 63) >> 6, (dims.k + 63) >> 6};
+}
+
+void check_region_count(const Workspace& workspace) {
+  const VoxelIndex regions = regions_along(workspace);
+  if (1.0 * regions.i * regions.j * regions.k <= most_regions) return;
+  throw Error({.where = "voxel_size",
+               .what = "too small for these bounds",
+               .found = fmt::format("{} x {} x {} voxels", workspace.dims.i, workspace.dims.j,
+                                    workspace.dims.k),
+               .expected = fmt::format("at most {:.0f} regions of 64 x 64 x 64", most_regions),
+               .hint = "larger voxels, smaller bounds, or check the units of the meshes"});
+}
+
 FieldWriter::FieldWriter(const Workspace& workspace, std::vector<FieldObject> objects)
-    : workspace_(workspace), objects_(std::move(objects)), records_(records_of(objects_)) {
-  const auto regions = [](std::int32_t voxels) { return (voxels + 63) >> 6; };
-  region_dims_ = {regions(workspace.dims.i), regions(workspace.dims.j), regions(workspace.dims.k)};
-  const double count = 1.0 * region_dims_.i * region_dims_.j * region_dims_.k;
-  constexpr double most = 1 << 27;  // half a GiB of root
-  if (count > most) {
-    throw Error({.where = "voxel_size",
-                 .what = "too small for these bounds",
-                 .found = fmt::format("{} x {} x {} voxels", workspace.dims.i, workspace.dims.j,
-                                      workspace.dims.k),
-                 .expected = fmt::format("at most {:.0f} regions of 64 x 64 x 64", most),
-                 .hint = "larger voxels, smaller bounds, or check the units of the meshes"});
-  }
-  const auto cells = static_cast<std::size_t>(count);
+    : workspace_(workspace),
+      objects_(std::move(objects)),
+      records_(records_of(objects_)),
+      region_dims_(regions_along(workspace)) {
+  check_region_count(workspace);
+  const std::size_t cells = static_cast<std::size_t>(region_dims_.i) *
+                            static_cast<std::size_t>(region_dims_.j) *
+                            static_cast<std::size_t>(region_dims_.k);
   codes_ = std::make_unique<SparseLayer>(cells, FieldReference::brick_unit, 0);
   const bool keeps_distance =
       std::any_of(objects_.begin(), objects_.end(),

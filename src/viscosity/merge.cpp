@@ -98,11 +98,13 @@ class Merge {
         earlier_(earlier),
         writer_(workspace, objects),
         records_(records_of(objects)),
+        seen_(arrays.size()),
         twins_(arrays.size()) {
     VoxelCode code = 0;
     for (std::size_t o = 0; o < objects.size(); ++o) {
       offsets_.push_back(code);  // of an object's own codes
       code = static_cast<VoxelCode>(code + 2 + objects[o].q);
+      seen_[o].assign(arrays[o]->codes().region_count(), false);
       twins_[o].assign(arrays[o]->codes().region_count(), unknown);
     }
     put_precedence();
@@ -159,9 +161,8 @@ class Merge {
       if (is_plain && item.present.size() == 1) {
         item.kind = Item::Kind::alone;
         if (!FieldReference::is_uniform(first.codes)) {
-          std::uint32_t& twin = twins_[first.object][first.codes];
-          item.is_first = twin == unknown;
-          if (item.is_first) twin = unknown - 1;
+          item.is_first = !seen_[first.object][first.codes];
+          seen_[first.object][first.codes] = true;
         }
       } else if (is_plain) {
         item.kind = Item::Kind::together;
@@ -419,12 +420,14 @@ class Merge {
   /// @return  false where there are too many codes
   bool contest_by_masks(Item& item, std::size_t b, bool is_cut) const {
     CodeMasks claims;  // by precedence
+    // Where the workspace cuts the brick, what lies beyond is empty: one code more may win.
+    const std::size_t most = CodeMasks::most - (is_cut ? 1 : 0);
     for (const Presence& p : item.present) {
       const std::uint32_t codes = brick_codes(p, b);
       if (codes == nothing) continue;
       CodeMasks own;
       if (!split(codes, arrays_[p.object]->codes().brick(codes), own)) return false;
-      if (claims.count() + own.count() > CodeMasks::most) return false;
+      if (claims.count() + own.count() > most) return false;
       for (std::size_t n = 0; n < own.count(); ++n) {
         if (own.codes()[n] == 0) continue;
         claims.push(precedence_[mapped(p.object, own.codes()[n])], own.mask(n));
@@ -561,7 +564,10 @@ class Merge {
   std::vector<VoxelRecord> records_;
   std::vector<VoxelCode> offsets_;
   std::vector<VoxelCode> precedence_, by_precedence_;
-  std::vector<std::vector<std::uint32_t>> twins_;  // object's region -> reference in the field
+  // Of an object's region. The first is prepare()'s, the second put()'s: they run beside each
+  // other.
+  std::vector<std::vector<bool>> seen_;
+  std::vector<std::vector<std::uint32_t>> twins_;        // its reference in the field
   std::map<std::vector<std::uint64_t>, Twin> meetings_;  // objects and their regions
   TakenOver codes_before_, distances_before_;
   std::vector<VoxelCounts> region_counts_;

@@ -251,10 +251,7 @@ VerifiedImage verify_image(std::span<const std::byte> image, const std::string& 
     reader.refuse("damaged", "distances that do not fit its objects");
   }
 
-  const auto regions_along = [](std::int32_t voxels) { return (voxels + 63) >> 6; };
-  verified.region_dims = {regions_along(verified.workspace.dims.i),
-                          regions_along(verified.workspace.dims.j),
-                          regions_along(verified.workspace.dims.k)};
+  verified.region_dims = regions_along(verified.workspace);
   const std::uint64_t root_size = std::uint64_t{4} *
                                   static_cast<std::uint64_t>(verified.region_dims.i) *
                                   static_cast<std::uint64_t>(verified.region_dims.j) *

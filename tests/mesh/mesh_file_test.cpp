@@ -236,6 +236,41 @@ TEST(MeshFile, EmptyAndCutAndSenselessFilesAreRefusedInOneSentence) {
   }
 }
 
+// Otherwise whoever sends a mesh reads files of this machine by the mesh's coordinates.
+TEST(MeshFile, AMeshReadsNoFileOutsideItsOwnFolder) {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder.path() / "own/below");
+  std::string corners;
+  for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) put(corners, x);
+  for (const char* name : {"outside.bin", "own/inside.bin", "own/below/deep.bin"}) {
+    folder.file(name, corners);
+  }
+  const auto naming = [&](const std::string& buffer) {
+    return folder.file("own/part.gltf", fmt::format(R"({{"asset": {{"version": "2.0"}}, "scene": 0,
+        "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+        "buffers": [{{"uri": "{}", "byteLength": 36}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 36}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}}]}})",
+                                                    buffer));
+  };
+  for (const char* buffer : {"inside.bin", "below/deep.bin", "below/../inside.bin"}) {
+    EXPECT_EQ(read_mesh(naming(buffer)).triangles.size(), 1u) << buffer;
+  }
+  const std::string absolute = (folder.path() / "outside.bin").string();
+  for (const std::string& buffer :
+       {std::string("../outside.bin"), std::string("below/../../outside.bin"), absolute}) {
+    EXPECT_THAT(refusal(naming(buffer)), HasSubstr("part.gltf")) << buffer;
+  }
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path() / "own");
+  naming("inside.bin");
+  EXPECT_EQ(read_mesh("part.gltf").triangles.size(), 1u);
+  naming("../outside.bin");
+  EXPECT_THAT(refusal("part.gltf"), HasSubstr("part.gltf"));
+  std::filesystem::current_path(before);
+}
+
 TEST(MeshFile, ReadingLeavesNoChildNoDescriptorAndNoOutputBehind) {
   const ScratchFolder folder;
   const auto good = folder.file("good.obj", obj(primitive::sphere(0.5, 12)));

@@ -101,6 +101,21 @@ TEST(EnergyAudit, WhatCannotBeAccountedIsNamedCountedAndSurvived) {
   EXPECT_DOUBLE_EQ(audit.balance().drag, 0.5);
 }
 
+TEST(EnergyAudit, AWayThatNoNumberHoldsIsNoCredit) {
+  EnergyAudit audit(scalar(1));
+  EXPECT_EQ(audit.record(0, one(0), one(1)), AuditStatus::started);
+  EXPECT_EQ(audit.record(1, one(1e200), one(1)), AuditStatus::not_finite);
+  EXPECT_EQ(audit.record(2, one(0), one(0)), AuditStatus::not_finite);
+  EXPECT_EQ(audit.balance().unaccounted, 2U);
+  EXPECT_EQ(audit.balance().drag, 0);
+  EXPECT_EQ(audit.balance().device, 0);
+  // A force that feeds the motion is still found.
+  EXPECT_EQ(audit.record(3, one(0), one(3)), AuditStatus::recorded);
+  EXPECT_EQ(audit.record(4, one(1), one(0)), AuditStatus::recorded);
+  EXPECT_DOUBLE_EQ(audit.balance().lowest, -2);
+  EXPECT_FALSE(audit.balance().passive);
+}
+
 TEST(EnergyAudit, RefusesADampingThatIsNone) {
   EXPECT_NO_THROW(EnergyAudit(Eigen::Matrix2d::Zero()));
   EXPECT_THROW(EnergyAudit(-Eigen::Matrix2d::Identity()), Error);

@@ -221,6 +221,19 @@ TEST(DragLimiter, AMissedDeadlineDropsTheForceAndARampBringsItBackEvenly) {
   EXPECT_EQ(limiter.counts().ticks, 62U);
 }
 
+TEST(DragLimiter, TheRampTakesItsTimeHoweverLateATickMayBe) {
+  LimiterOptions options = joints(scalar(1));
+  options.period_s = 0.05;  // what still counts as on time
+  options.ramp_s = 0.1;
+  DragLimiter limiter(options);
+  const Eigen::VectorXd velocity = Eigen::VectorXd::Ones(1);
+  limiter.limit(scalar(0.1), velocity, {.deadline_missed = true});
+  for (int k = 1; k <= 120; ++k) {  // ticks that come at 1 kHz
+    const LimiterOutput output = limiter.limit(scalar(0.1), velocity, {.spacing_s = 0.001});
+    EXPECT_NEAR(output.ramp, std::min(1.0, k / 100.0), 1e-12);
+  }
+}
+
 TEST(DragLimiter, AStaleVelocityIsUsedForAsLongAsWasPaidFor) {
   LimiterOptions options = joints(scalar(1));
   options.longest_hold = 4;

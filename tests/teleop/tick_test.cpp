@@ -20,6 +20,7 @@
 #include "no_allocation.h"
 #include "rounds.h"
 #include "vicinity/drag/moving_point.h"
+#include "vicinity/geometry/error.h"
 #include "vicinity/mesh/primitive.h"
 #include "vicinity/viscosity/build_field.h"
 
@@ -419,6 +420,9 @@ TEST(Tick, NamesBadInputGivesNoForceAndRecovers) {
       {"time running backwards", Status::time_ran_backwards,
        [](Input& in, Vec3&) { in.time_s -= 0.5; }},
       {"missed deadline", Status::deadline_missed, [](Input& in, Vec3&) { in.time_s += 0.02; }},
+      {"positions too far apart for a velocity", Status::not_finite,
+       [](Input&, Vec3& q) { q[0] = 3e305; }},
+      {"half a turn at once", Status::jumped, [](Input&, Vec3& q) { q[0] += 3; }},
       {"half a metre at once", Status::jumped,
        [](Input& in, Vec3&) { in.X_WB.translation().x() += 0.5; }},
   };
@@ -444,9 +448,54 @@ TEST(Tick, NamesBadInputGivesNoForceAndRecovers) {
       EXPECT_TRUE(output.torque.allFinite());
       if (k > 210) {
         EXPECT_TRUE(status == Status::ok || status == Status::outside_field) << to_string(status);
-        EXPECT_EQ(output.limiter.ramp, 1);
+        EXPECT_NEAR(output.limiter.ramp, 1, 1e-12);
       }
     }
+  }
+}
+
+// The last link's origin lies on its own axis, and stays where it is.
+TEST(Tick, ALeapAboutALinksOwnAxisIsNoMotion) {
+  RobotModel robot = small_arm();
+  robot.links.resize(2);
+  robot.joints.resize(1);
+  robot.coordinates = {0};
+  TeleoperationOptions options;
+  Teleoperation teleoperation(robot, points_of(robot), ranked(), options);
+  Output output;
+  double q = 0, time_s = 0;
+  const auto tick = [&] {
+    time_s += period;
+    return teleoperation.tick({.time_s = time_s, .q = &q, .joint_count = 1}, output);
+  };
+  tick();
+  // The link is 0.4 m long: its corners are 0.401 m from the axis.
+  for (const double turn : {0.2, 0.24, -0.24, -0.2}) {
+    q += turn;
+    EXPECT_LE(tick(), Status::outside_field) << turn;
+  }
+  for (const double turn : {0.3, 1.0, 3.1, -3.1, -0.3}) {
+    q += turn;
+    EXPECT_EQ(tick(), Status::jumped) << turn;
+    EXPECT_EQ(output.torque.norm(), 0);
+    EXPECT_LE(tick(), Status::outside_field);
+  }
+}
+
+TEST(Tick, RefusesPointsOfAnotherRobotAndWeightsThatAreNone) {
+  const RobotModel robot = small_arm();
+  RobotModel shorter = robot;
+  shorter.links.resize(2);
+  shorter.joints.resize(1);
+  shorter.coordinates = {0};
+  EXPECT_THROW(Teleoperation(shorter, points_of(robot), ranked()), Error);
+  TeleoperationOptions options;
+  for (const MemoryWeights& none :
+       {MemoryWeights{.k = 0}, MemoryWeights{.k = 33}, MemoryWeights{.k = 1, .alpha = {0}},
+        MemoryWeights{.k = 2, .alpha = {1, -1}},
+        MemoryWeights{.k = 1, .alpha = {std::numeric_limits<double>::infinity()}}}) {
+    options.memory = none;
+    EXPECT_THROW(Teleoperation(robot, points_of(robot), ranked(), options), Error) << none.k;
   }
 }
 

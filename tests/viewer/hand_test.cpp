@@ -99,6 +99,27 @@ TEST(Hand, FeelsTheDragThatTheArmFeels) {
   EXPECT_NEAR(slide.hand.felt(), 4, 0.3);
 }
 
+TEST(Hand, IsOnARecordingThatGoesBeyondALimitAsFarAsTheLimit) {
+  const RobotModel robot = parse_urdf(cli_test::small_arm, "arm.urdf").robot;
+  ForwardKinematics kinematics(robot);
+  const AxisVector start = AxisVector::Zero(3);
+  Hand hand(robot, 3, start);
+  kinematics.update(start.data(), start.data(), Pose::Identity());
+  Drive drive;
+  drive.mode = DriveMode::follow;
+  drive.q = Vec3(0.1, 2.5, 0.3);  // bend goes to 2, slide to 0.1
+  for (int k = 0; k < 3000; ++k) hand.move(drive, kinematics, start, period_s);
+  EXPECT_LE((hand.q() - Vec3(0.1, 2, 0.1)).norm(), 1e-12);
+  EXPECT_LE(hand.lag(), 1e-12);
+  // What no number says moves nothing, and what comes then moves it again.
+  drive.q = Vec3(1e306, 0, 0);
+  hand.move(drive, kinematics, start, period_s);
+  EXPECT_TRUE(hand.q().allFinite() && hand.qd().allFinite());
+  drive.q = Vec3::Zero();
+  for (int k = 0; k < 3000; ++k) hand.move(drive, kinematics, start, period_s);
+  EXPECT_LE(hand.q().norm(), 1e-12);
+}
+
 TEST(Hand, NeverMovesAJointFasterOrFartherThanItsLimits) {
   const RobotModel robot = parse_urdf(cli_test::small_arm, "arm.urdf").robot;
   ForwardKinematics kinematics(robot);

@@ -402,6 +402,35 @@ TEST(Viewer, ARecordingOfReplayIsPlayedAndFollowed) {
     off = (Vec3(seen->q(0), seen->q(1), seen->q(2)) - there).norm();
   }
   EXPECT_LE(off, 1e-6) << "the arm has not come to where the recording is";
+
+  // Another page drove before, and is closed: it does not stop what was asked for after it.
+  const auto mode_after = [&](int snapshots) {
+    std::uint8_t mode = 255;
+    for (int n = 0; n < snapshots; ++n) {
+      if (const auto seen = next_snapshot(page)) mode = seen->at<std::uint8_t>(65);
+    }
+    return mode;
+  };
+  {
+    PageClient drives(served.port());
+    drives.send(drive_joints(0, 0, 0));
+    ASSERT_TRUE(drives.next_of(3));
+    page.send(command(71, 52, R"({"recording": 1, "time": 0, "speed": 1, "loop": true})"));
+    ASSERT_EQ(page.answer(52)->type(), 13);
+  }
+  EXPECT_EQ(mode_after(20), 3);
+
+  // A DRIVE that comes after a FOLLOW counts, though the FOLLOW waits behind other work.
+  for (std::uint32_t round = 0; round < 5; ++round) {
+    for (std::uint32_t n = 0; n < 4; ++n) {
+      page.send(command(65, 60 + n,
+                        bytes_of(std::uint8_t{2}, std::uint8_t{0}, std::uint16_t{512}, 0u, 0.0)));
+    }
+    page.send(command(71, 70 + round, R"({"recording": 1, "time": 0, "speed": 1, "loop": true})"));
+    page.send(command(64, 0, bytes_of(std::uint8_t{0}, std::uint8_t{0}, std::uint16_t{0}, 0u)));
+    ASSERT_EQ(page.answer(70 + round)->type(), 13);
+    EXPECT_EQ(mode_after(3), 0) << "round " << round;
+  }
 }
 
 }  // namespace

@@ -5,14 +5,17 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 #include "served.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/mesh/primitive.h"
 #include "vicinity/mesh/stl_file.h"
+#include "web/gate.h"
 
 namespace vicinity::viewer_test {
 namespace {
@@ -45,9 +48,23 @@ TEST(Gate, APageOfAnotherOriginIsRefused) {
 
 TEST(Gate, ANameThatWasPointedAtTheLoopbackAddressIsRefused) {
   Served served;
-  const std::string text =
-      "GET /file?name=a.stl HTTP/1.1\r\nHost: evil.example\r\nOrigin: http://evil.example\r\n\r\n";
-  EXPECT_EQ(exchange(served.port(), text).status, 403);
+  for (const std::string host :
+       {"evil.example", "127.evil.example", "127.0.0.1.evil.example", "localhost.evil.example",
+        "127.0.0.1evil", "127.1", "::1", "[::1].evil.example", "127.0.0.1:80:80"}) {
+    EXPECT_EQ(exchange(served.port(), "GET /file?name=a.stl HTTP/1.1\r\nHost: " + host +
+                                          "\r\nOrigin: http://" + host + "\r\n\r\n")
+                  .status,
+              403)
+        << host;
+    EXPECT_FALSE(viewer::is_loopback(host) && host != "::1") << host;
+  }
+  for (const char* host : {"localhost", "127.0.0.1", "127.9.8.7", "[::1]", "localhost:80"}) {
+    EXPECT_EQ(exchange(served.port(),
+                       std::string("GET /file?name=a.stl HTTP/1.1\r\nHost: ") + host + "\r\n\r\n")
+                  .status,
+              404)
+        << host;
+  }
 }
 
 TEST(Gate, ATokenIsAskedForWhereOneWasGiven) {
@@ -164,6 +181,39 @@ TEST(Web, AClientThatSendsTooFastIsToldAndThenClosed) {
   }
   EXPECT_TRUE(told);
   EXPECT_TRUE(closed);
+}
+
+TEST(Web, ALongAnswerArrivesWholeHoweverSlowlyItIsTaken) {
+  viewer::WebOptions options;
+  options.waiting_bytes = 100'000;  // of messages; a file is one answer, however long
+  options.silence_s = 0.5;
+  Served served(options);
+  std::string file(24u << 20, '\0');  // more than sockets hold
+  for (std::size_t n = 0; n < file.size(); ++n) file[n] = static_cast<char>(n * 2654435761u >> 13);
+  std::filesystem::create_directories(served.folder().path() / "files");
+  std::ofstream(served.folder().path() / "files/long.vicinity", std::ios::binary) << file;
+
+  Connected slow(served.port());
+  // Small, so that what is taken soon makes room for more.
+  const int window = 65'536;
+  setsockopt(slow.socket(), SOL_SOCKET, SO_RCVBUF, &window, sizeof window);
+  slow.send("GET /file?name=long.vicinity HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  shutdown(slow.socket(), SHUT_WR);  // it has said all it has to say
+  std::string all;
+  const auto begin = std::chrono::steady_clock::now();
+  while (true) {
+    const std::string more = slow.receive(std::chrono::seconds(20));
+    if (more.empty()) break;
+    all += more;
+    // For as long as three silences, little by little.
+    if (std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(1500)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+  const std::size_t head = all.find("\r\n\r\n");
+  ASSERT_NE(head, std::string::npos);
+  EXPECT_TRUE(std::string_view(all).substr(head + 4) == file)
+      << all.size() - head - 4 << " of " << file.size() << " bytes came";
 }
 
 TEST(Web, AConnectionThatNeverFinishesItsRequestIsClosed) {

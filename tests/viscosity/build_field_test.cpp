@@ -15,6 +15,7 @@
 #include "seeds.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/layers/distance_layers.h"
+#include "vicinity/mesh/placement.h"
 #include "vicinity/mesh/primitive.h"
 
 namespace vicinity {
@@ -115,44 +116,84 @@ class LoneObject {
   DistanceLayers layers_;
 };
 
+/// Voxel by voxel, the field is what its objects alone make of it, by precedence.
+void expect_plain_merge(const Scene& scene) {
+  const ViscosityField field = build_field(scene).field;
+
+  std::map<std::string, LoneObject> alone;  // in the order of names, in which ties are settled
+  for (const SceneObject& o : scene.objects) {
+    alone.emplace(o.name, LoneObject(o, field.workspace()));
+  }
+  const VoxelIndex dims = field.workspace().dims;
+  VoxelCounts counts;
+  int wrong = 0;
+  for (std::int32_t k = 0; k < dims.k; ++k) {
+    for (std::int32_t j = 0; j < dims.j; ++j) {
+      for (std::int32_t i = 0; i < dims.i; ++i) {
+        Voxel winner;
+        double weight = 0;
+        for (const auto& [name, object] : alone) {
+          const Voxel voxel = object.at({i, j, k});
+          const double mine = object.weight(voxel);
+          if (voxel.kind > winner.kind || (voxel.kind == winner.kind && mine > weight)) {
+            winner = voxel;
+            weight = mine;
+          }
+        }
+        counts.boundary += winner.kind == VoxelKind::boundary;
+        counts.inner += winner.kind == VoxelKind::inner;
+        counts.neighbour += winner.kind == VoxelKind::neighbour;
+        wrong += !(voxel_at(field, {i, j, k}) == winner);
+      }
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(field.voxel_counts().boundary, counts.boundary);
+  EXPECT_EQ(field.voxel_counts().inner, counts.inner);
+  EXPECT_EQ(field.voxel_counts().neighbour, counts.neighbour);
+}
+
 TEST(BuildField, IsThePlainMergeOfItsObjects) {
   for_each_seed(test::rounds(20), [](std::mt19937& random) {
     Scene scene = random_scene(random, whole(random, 1, 5), 28);
     if (whole(random, 0, 1) == 0) scene.bounds = cut_out(random, 10, 50);
-    const ViscosityField field = build_field(scene).field;
+    expect_plain_merge(scene);
+  });
+}
 
-    std::map<std::string, LoneObject> alone;  // in the order of names, in which ties are settled
-    for (const SceneObject& o : scene.objects) {
-      alone.emplace(o.name, LoneObject(o, field.workspace()));
-    }
-    const VoxelIndex dims = field.workspace().dims;
-    VoxelCounts counts;
-    int wrong = 0;
-    for (std::int32_t k = 0; k < dims.k; ++k) {
-      for (std::int32_t j = 0; j < dims.j; ++j) {
-        for (std::int32_t i = 0; i < dims.i; ++i) {
-          Voxel winner;
-          double weight = 0;
-          for (const auto& [name, object] : alone) {
-            const Voxel voxel = object.at({i, j, k});
-            const double mine = object.weight(voxel);
-            if (voxel.kind > winner.kind || (voxel.kind == winner.kind && mine > weight)) {
-              winner = voxel;
-              weight = mine;
-            }
-          }
-          counts.boundary += winner.kind == VoxelKind::boundary;
-          counts.inner += winner.kind == VoxelKind::inner;
-          counts.neighbour += winner.kind == VoxelKind::neighbour;
-          wrong += !(voxel_at(field, {i, j, k}) == winner);
+// In a brick that the bounds cut, as many codes as fit may all win, and what lies beyond is one
+// more.
+TEST(BuildField, ABrickMayHoldAsManyCodesAsThereIsRoomFor) {
+  for (int boxes = 26; boxes <= 30; ++boxes) {
+    SCOPED_TRACE(boxes);
+    Scene scene;
+    scene.voxel_size = 1;
+    scene.bounds = Box(Vec3::Zero(), Vec3(7, 8, 8));
+    int made = 0;
+    for (const int x : {1, 4}) {
+      for (const int y : {1, 3, 5, 7}) {
+        for (const int z : {0, 2, 4, 6}) {
+          if (made == boxes) continue;
+          SceneObject box = box_object("box " + std::to_string(++made), Vec3::Constant(0.2),
+                                       Vec3(x + 0.5, y + 0.5, z + 0.5));
+          box.m = box.q = 1;
+          box.coding = {{50.0 + made}, 100};
+          scene.objects.push_back(box);
         }
       }
     }
-    EXPECT_EQ(wrong, 0);
-    EXPECT_EQ(field.voxel_counts().boundary, counts.boundary);
-    EXPECT_EQ(field.voxel_counts().inner, counts.inner);
-    EXPECT_EQ(field.voxel_counts().neighbour, counts.neighbour);
-  });
+    SceneObject floor = box_object("floor", Vec3(30, 30, 0.2), Vec3(4, 4, -1.5));
+    floor.m = 1;
+    floor.q = 9;
+    floor.coding = {{9, 8, 7, 6, 5, 4, 3, 2, 1}, 100};
+    scene.objects.push_back(floor);
+    // Triangles as they stand where the field is built.
+    for (SceneObject& object : scene.objects) {
+      object.shape = place(std::get<TriangleMesh>(object.shape), 1, object.X_WO);
+      object.X_WO = Pose::Identity();
+    }
+    expect_plain_merge(scene);
+  }
 }
 
 TEST(BuildField, DoesNotDependOnTheOrderOfObjectsOrTriangles) {
@@ -339,6 +380,24 @@ TEST(BuildField, WhatCannotBeBuiltIsAnErrorThatNamesTheObject) {
   EXPECT_THAT(with([](S&, O& o) { o.X_WO.translation().x() = 1e12; }),
               HasSubstr("'one': too large"));
   EXPECT_THAT(with([](S&, O& o) { o.scale = 1e6; }), HasSubstr("'one': too large"));
+  // Few voxels in a box that holds too many, within bounds and without.
+  const auto add_far_away = [](S& s, O& o) {
+    TriangleMesh& mesh = std::get<TriangleMesh>(o.shape);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3& p : primitive::box(Vec3::Constant(0.1)).vertices) {
+      mesh.vertices.push_back(p + Vec3::Constant(500));
+    }
+    for (auto [a, b, c] : primitive::box(Vec3::Constant(0.1)).triangles) {
+      mesh.triangles.push_back({first + a, first + b, first + c});
+    }
+    s.bounds = Box(Vec3::Constant(-1), Vec3::Constant(1));
+  };
+  EXPECT_THAT(with(add_far_away), HasSubstr("'one': too large"));
+  EXPECT_THAT(with([](S& s, O&) {
+                s.objects.push_back(box_object("two", Vec3::Constant(0.1), Vec3::Constant(500)));
+              }),
+              HasSubstr("too small for these bounds"));
+  EXPECT_THAT(with([](S&, O& o) { o.coding.skin = 1e39; }), HasSubstr("the skin"));
   EXPECT_THAT(with([](S&, O& o) { o.shape = TriangleMesh{}; }), HasSubstr("'one'"));
   EXPECT_THAT(with([](S&, O& o) { std::get<TriangleMesh>(o.shape).vertices[0].x() = nan; }),
               HasSubstr("'one': a triangle"));

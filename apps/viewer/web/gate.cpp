@@ -11,13 +11,13 @@ namespace vicinity::viewer {
 namespace {
 
 std::string_view without_port(std::string_view host) {
-  if (host.starts_with('[')) return host.substr(0, host.find(']') + 1);
-  return host.substr(0, host.find(':'));
+  const std::size_t end = host.find_last_not_of("0123456789");
+  return end != std::string_view::npos && host[end] == ':' ? host.substr(0, end) : host;
 }
 
 bool names_loopback(std::string_view host) {
   const std::string_view name = without_port(host);
-  return name == "[::1]" || (name != "::1" && is_loopback(std::string(name)));
+  return name == "[::1]" || is_loopback(std::string(name));
 }
 
 // As long for a wrong token as for a right one, whatever of it is right.

@@ -39,6 +39,9 @@ struct MemoryWeights {
 /// Errors: throws Error for another name.
 MemoryWeights named_memory(std::string_view name);
 
+/// The weights themselves. Errors: throws Error where they are not as MemoryWeights says.
+const MemoryWeights& checked(const MemoryWeights& weights);
+
 /// mu_e: the weighted mean of exactly k values (eq. 7; eq. 6 where all weights are 1; its sums are
 /// read as k terms, i = 0..k-1) [N·s/m³]. The lowest of the k values <= mu_e <= the highest,
 /// exactly: a point in even surroundings feels their viscosity to the last bit.

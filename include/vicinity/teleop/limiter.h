@@ -161,7 +161,7 @@ class DragLimiter {
   double damping_factor_ = 0, mass_limit_ = 0;
   AxisVector encoder_step_, dry_friction_, torque_limits_;  // empty where unknown
   double force_limit_;
-  double period_s_, ramp_step_;
+  double period_s_, ramp_s_;
   int longest_hold_;
   double ramp_ = 1;
   LimiterCounts counts_;

@@ -34,11 +34,12 @@ namespace vicinity {
 
 class TreeDrag;
 
-/// What became of a tick. From `deadline_missed` on, the force is zero, and what follows grows back
-/// over LimiterOptions::ramp_s: a sudden drop is felt, and so is a sudden return.
+/// What became of a tick. From `deadline_missed` on, the force is zero. With a limiter, what
+/// follows grows back over LimiterOptions::ramp_s: a sudden drop is felt, and so is a sudden
+/// return. Without one it is back at once.
 enum class Status : std::uint8_t {
   ok,
-  started,  ///< the first tick, or the first after a refused one: velocity zero, no drag
+  started,              ///< the first tick: velocity zero, no drag
   beyond_joint_limits,  ///< a joint is outside its limits; drag as usual
   outside_field,        ///< no body point is in the workspace; there is nothing to feel
   deadline_missed,      ///< more than `longest_period_s` since the last tick
@@ -46,7 +47,7 @@ enum class Status : std::uint8_t {
   time_ran_backwards,
   not_finite,   ///< NaN or infinity among positions, velocities, time or base
   wrong_size,   ///< not as many joints as the robot has
-  jumped,       ///< a link moved by more than `longest_jump_m`; its points start anew
+  jumped,       ///< a point may have moved by more than `longest_jump_m`; all points start anew
   not_passive,  ///< the limiter refused: see Output::limiter.status
 };
 
@@ -72,7 +73,8 @@ struct TeleoperationOptions {
   /// Beyond: the deadline was missed. No torque may act for longer, so whoever sends it to the
   /// device sends zero by then. The audit assumes the worst: that the last torque was held.
   double longest_period_s = 0.0015;
-  double longest_jump_m = 0.1;  ///< by any link's origin in one tick; farther is no motion
+  /// By any point of a link in one tick; farther is no motion. Where voxels are small, 510 of them.
+  double longest_jump_m = 0.1;
 };
 
 /// One joint state.

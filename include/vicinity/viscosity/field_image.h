@@ -111,6 +111,14 @@ class RegionDraft {
 
 class SparseLayer;
 
+/// Regions of 64 x 64 x 64 voxels that a field, or one object's own array, may have: half a GiB of
+/// root.
+inline constexpr double most_regions = 1 << 27;
+/// How many regions a workspace has along x, y, z.
+VoxelIndex regions_along(const Workspace& workspace) noexcept;
+/// Errors: throws Error for a workspace that has more regions than that.
+void check_region_count(const Workspace& workspace);
+
 /// Puts regions together into an image.
 class FieldWriter {
  public:
