@@ -127,7 +127,9 @@ void add_export(CLI::App& parent, Run& run) {
       "vicinity export cell.vicinity -o cell.npy --what rank --box 0,0,0,0.5,0.5,0.5");
   auto& [app, options] = command;
   app.add_option("FIELD", options->field, "made by vicinity build")->required();
-  app.add_option("-o,--output", options->output, "file to write; its ending says the format")
+  app.add_option("-o,--output", options->output,
+                 "file to write; its ending says the format; beside NAME.npy, NAME.json is "
+                 "written too, with origin and voxel size")
       ->required();
   app.add_option("--what", options->what,
                  "rank (boundary 0, empty -1, inner -2), viscosity, object or distance; default: "

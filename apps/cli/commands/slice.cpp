@@ -8,6 +8,7 @@
 #include <array>
 
 #include "arguments.h"
+#include "outputs.h"
 #include "picture/slice_picture.h"
 #include "vicinity/viscosity/field_file.h"
 
@@ -32,6 +33,7 @@ int slice(const SliceOptions& options, std::ostream& out, std::ostream&) {
                  .hint = "--z 0.04"});
   }
   if (!options.box.empty()) plane.part = box_from("--box", options.box);
+  check_outputs({{"-o", options.output}}, {options.field});
   draw_slice(open_field(options.field), plane, options.output);
   out << fmt::format("{}: the layers at {} = {:g} m\n", options.output.string(), "xyz"[plane.axis],
                      plane.position);

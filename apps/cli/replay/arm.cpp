@@ -108,6 +108,16 @@ Arm fit_out(RobotLoad load, const SceneRobot& placed, const ArmOptions& options)
 
 }  // namespace
 
+std::vector<std::filesystem::path> files_of(const ArmOptions& options) {
+  std::vector<std::filesystem::path> files = {options.robot, options.scene};
+  if (options.robot.empty() && !options.scene.empty()) {
+    files.push_back(placed_robot(options).urdf);
+  }
+  const std::filesystem::path device(options.device);  // or a name: find_device()
+  if (device.extension() == ".yaml" || device.extension() == ".yml") files.push_back(device);
+  return files;
+}
+
 Arm bodiless_arm(const ArmOptions& options) {
   Arm arm;
   arm.teleoperation.memory = named_memory(options.memory);
