@@ -109,6 +109,7 @@ TEST_F(Replay, ReadsTheSameMotionHoweverItIsWritten) {
       {"byte order mark, CRLF, blanks and quotes", "\xEF\xBB\xBF\"t\", turn ,\"bend\", slide",
        " , ", "\r\n", "", 1, 1, 1},
       {"semicolons and a blank last line", "\n\nt;turn;bend;slide", ";", "\n\n", "", 1, 1, 1},
+      {"a comma at the end of each line", "t,turn,bend,slide", ",", ",\n", "", 1, 1, 1},
       {"tabs, and a name of its own for time", "stamp\tturn\tbend\tslide", "\t", "\n", "t=stamp", 1,
        1, 1},
   };

@@ -191,6 +191,20 @@ Sources sources_of(const Columns& columns, const RobotModel& robot,
   return sources;
 }
 
+// Cells that nobody named; empty ones, as a comma at the end of a line leaves them, do no harm. A
+// decimal comma would be read as two numbers.
+void refuse_cells_too_many(const std::string& where, const CsvTable& table,
+                           const CsvTable::Line& line) {
+  const std::size_t named = table.header().size();
+  std::size_t filled = line.cells.size();
+  while (filled > named && line.cells[filled - 1].empty()) --filled;
+  if (filled <= named) return;
+  throw Error({.where = fmt::format("{}:{}", where, line.number),
+               .what = "the line is too long: a decimal comma?",
+               .found = fmt::format("{} cells where the header has {}", filled, named),
+               .hint = "decimal points, or semicolons between the cells"});
+}
+
 double number_in(const std::string& where, const CsvTable& table, const CsvTable::Line& line,
                  const Source& source) {
   const auto refuse = [&](const std::string& what, const std::string& found) {
@@ -230,6 +244,7 @@ JointLog read_joint_log(const std::filesystem::path& path, const RobotModel& rob
   std::vector<double> q, qd;
   std::vector<std::size_t> lines;
   for (CsvTable::Line line; table.next(line);) {
+    refuse_cells_too_many(where, table, line);
     const double t = number_in(where, table, line, sources.time);
     if (!log.t.empty() && !(t > log.t.back())) {
       throw Error({.where = fmt::format("{}:{}", where, line.number),
