@@ -80,7 +80,9 @@ void add_check(CLI::App& parent, Run& run) {
                                 "vicinity check vessel.stl --units mm");
   auto& [app, options] = command;
   app.add_option("MESH", options->mesh, "STL, OBJ, PLY, glTF, 3MF or DAE file")->required();
-  app.add_option("--units", options->units, "mm, cm, m or in: what one unit of the file means");
+  app.add_option("--units", options->units,
+                 "mm, cm, m or in: what one unit of the file means; a unit that it states itself "
+                 "is not read");
   app.add_flag("--json", options->json, "for programs");
   command.runs(check, run);
 }
@@ -93,7 +95,8 @@ void add_build(CLI::App& parent, Run& run) {
   auto& [app, options] = command;
   app.add_option("INPUT", options->input, "scene (.yaml, .yml) or mesh file")->required();
   app.add_option("-o,--output", options->output, "the field to write")->required();
-  app.add_option("--units", options->units, "of a single mesh: mm, cm, m or in");
+  app.add_option("--units", options->units,
+                 "of a single mesh, whatever it states itself: mm, cm, m or in");
   app.add_option("--meshes", options->meshes,
                  "folder that relative mesh paths start at; default: that of the scene file");
   app.add_option("--voxel-size", options->voxel_size, "edge of a voxel [m]");

@@ -45,7 +45,7 @@ bool is_scene(const std::filesystem::path& path) {
 Scene scene_of_one_mesh(const BuildOptions& options) {
   if (options.units.empty()) {
     throw Error({.where = options.input.string(),
-                 .what = "has no unit, for mesh files carry none",
+                 .what = "has no unit: none is stated, and none is read from mesh files",
                  .found = size_in_units(read_mesh(options.input).bounds()),
                  .hint = "--units with the reading that is right"});
   }
