@@ -111,7 +111,7 @@ Arm fit_out(RobotLoad load, const SceneRobot& placed, const ArmOptions& options)
 std::vector<std::filesystem::path> files_of(const ArmOptions& options) {
   std::vector<std::filesystem::path> files = {options.robot, options.scene};
   if (options.robot.empty() && !options.scene.empty()) {
-    files.push_back(placed_robot(options).urdf);
+    if (const auto robot = read_scene(options.scene).robot) files.push_back(robot->urdf);
   }
   const std::filesystem::path device(options.device);  // or a name: find_device()
   if (device.extension() == ".yaml" || device.extension() == ".yml") files.push_back(device);
