@@ -81,7 +81,7 @@ const Refusal refusals[] = {
     {"OutputThatIsAFolder", {"build", "scene.yaml", "-o", "."}, "."},
     {"NegativeThreads", {"build", "scene.yaml", "-o", "x.f", "--threads", "-3"}, "--threads"},
     {"QueryWithTwoNumbers", {"query", "f.vicinity", "1", "2"}, "POINT"},
-    {"QueryOfNoPoint", {"query", "f.vicinity", "1", "2", "nan"}, "coordinates"},
+    {"QueryOfNoPoint", {"query", "f.vicinity", "1", "2", "nan"}, "'nan' is not a finite number"},
     {"SliceWithoutPlane", {"slice", "f.vicinity", "-o", "x.png"}, "--z"},
     {"SliceOutsideTheWorkspace", {"slice", "f.vicinity", "--z", "99", "-o", "x.png"}, "99"},
     {"SliceAsUnknownPicture", {"slice", "f.vicinity", "--z", "0", "-o", "x.bmp"}, ".png"},
@@ -144,6 +144,31 @@ TEST_P(Refused, WithOneSentence) {
 
 INSTANTIATE_TEST_SUITE_P(, Refused, testing::ValuesIn(refusals),
                          [](const auto& which) { return which.param.claim; });
+
+TEST(Numbers, ThatAreNotFiniteAreRefusedByEveryCommand) {
+  const Folder folder;
+  const std::vector<std::vector<std::string>> commands = {
+      {"build", "s.yaml", "-o", "f", "--voxel-size", "nan"},
+      {"build", "s.yaml", "-o", "f", "--skin", "inf"},
+      {"trace", "f", "--from", "0,0,0", "--to", "1,0,0", "--speed=-inf"},
+      {"trace", "f", "--from", "0,0,0", "--to", "1,0,0", "--area", "1e999"},
+      {"slice", "f", "-o", "s.png", "--z", "nan"},
+      {"query", "f", "0", "inf", "0"},
+      {"replay", "f", "--points-per-m2", "nan"},
+      {"replay", "f", "--rate", "nan"},
+      {"bench", "tick", "--seconds", "nan"},
+      {"simulate", "--demo", "-o", "d", "--step-ms", "nan"},
+      {"serve", "f", "--seconds", "nan"},
+  };
+  for (const auto& command : commands) {
+    const Answer answer = folder.run(command);
+    EXPECT_EQ(answer.code, 2) << command[0];
+    EXPECT_THAT(answer.err, testing::AnyOf(HasSubstr("is not a finite number; try"),
+                                           HasSubstr("built without the viewer")))
+        << command[0];
+  }
+  EXPECT_TRUE(folder.files().empty());
+}
 
 TEST(Help, AloneItIsFriendly) {
   const Folder folder;
