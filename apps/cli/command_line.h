@@ -17,6 +17,7 @@
 #include "replay/arm.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/geometry/nearest_word.h"
+#include "vicinity/teleop/device.h"
 
 namespace vicinity::cli {
 
@@ -41,6 +42,10 @@ inline CLI::Option* add_density(CLI::App& app, ArmOptions& options) {
 
 /// How it feels, and for which device.
 inline void add_feel(CLI::App& app, ArmOptions& options) {
+  std::string devices;
+  for (const Device& device : known_devices()) {
+    devices += (devices.empty() ? "" : ", ") + device.name;
+  }
   app.add_option("--memory", options.memory, "none, sustained, fading, short or rising")
       ->capture_default_str();
   app.add_option("--direction", options.direction,
@@ -51,7 +56,7 @@ inline void add_feel(CLI::App& app, ArmOptions& options) {
       ->capture_default_str();
   app.add_option(
       "--device", options.device,
-      "in the operator's hand: a known name, or a .yaml file; default: none, no limiter");
+      "in the operator's hand: " + devices + ", or a .yaml file; default: none, no limiter");
   app.add_option("--mode", options.mode,
                  "strict: within the device's own damping, provably passive; device: within a "
                  "ceiling known from practice")

@@ -5,8 +5,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 
 #include "program.h"
 
@@ -168,6 +170,24 @@ TEST(Numbers, ThatAreNotFiniteAreRefusedByEveryCommand) {
         << command[0];
   }
   EXPECT_TRUE(folder.files().empty());
+}
+
+// A limit on file size fails a write as a full disk does.
+TEST(FullDisk, UnderStandardOutputIsNoFaultOfTheProgram) {
+  const Folder folder;
+  folder.write("scene.yaml", small_scene);
+  ASSERT_EQ(folder.run({"build", "scene.yaml", "-o", "f.vicinity"}).code, 0);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);  // children take it over
+  const rlimit small = {200, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const Answer answer = folder.run({"info", "f.vicinity", "--json"});
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_THAT(answer.err, HasSubstr("standard output could not be written"));
+  EXPECT_THAT(answer.err, testing::Not(HasSubstr("should not have happened")));
 }
 
 TEST(Help, AloneItIsFriendly) {
