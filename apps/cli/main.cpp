@@ -190,7 +190,7 @@ void add_replay(CLI::App& parent, Run& run) {
   add_arm(app, options->arm);
   CLI::Option* const density = add_density(app, options->arm);
   app.add_option("--points", options->arm.points, "body points in all, in place of a density")
-      ->check(CLI::Range(1, 100'000'000))
+      ->check(CLI::Range(std::size_t{1}, BodyPoints::most))
       ->excludes(density);
   add_feel(app, options->arm);
   app.add_option("--trajectory", options->trajectory,
