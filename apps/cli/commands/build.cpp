@@ -43,6 +43,10 @@ bool is_scene(const std::filesystem::path& path) {
 }
 
 Scene scene_of_one_mesh(const BuildOptions& options) {
+  if (!options.meshes.empty()) {
+    throw Error(
+        {.where = "--meshes", .what = "is for a scene; a single mesh has a path of its own"});
+  }
   if (options.units.empty()) {
     throw Error({.where = options.input.string(),
                  .what = "has no unit: none is stated, and none is read from mesh files",
