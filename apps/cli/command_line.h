@@ -7,6 +7,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@
 #include "replay/arm.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/geometry/nearest_word.h"
+#include "vicinity/teleop/device.h"
 
 namespace vicinity::cli {
 
@@ -40,6 +42,10 @@ inline CLI::Option* add_density(CLI::App& app, ArmOptions& options) {
 
 /// How it feels, and for which device.
 inline void add_feel(CLI::App& app, ArmOptions& options) {
+  std::string devices;
+  for (const Device& device : known_devices()) {
+    devices += (devices.empty() ? "" : ", ") + device.name;
+  }
   app.add_option("--memory", options.memory, "none, sustained, fading, short or rising")
       ->capture_default_str();
   app.add_option("--direction", options.direction,
@@ -50,7 +56,7 @@ inline void add_feel(CLI::App& app, ArmOptions& options) {
       ->capture_default_str();
   app.add_option(
       "--device", options.device,
-      "in the operator's hand: a known name, or a .yaml file; default: none, no limiter");
+      "in the operator's hand: " + devices + ", or a .yaml file; default: none, no limiter");
   app.add_option("--mode", options.mode,
                  "strict: within the device's own damping, provably passive; device: within a "
                  "ceiling known from practice")
@@ -99,12 +105,27 @@ inline std::string named_command(const CLI::App& app, int argc, char** argv) {
   return name;
 }
 
+/// "nan", "inf" and "1e999" are numbers to CLI11, and of use to no option: from now on every option
+/// of the command and of those below it that takes a number refuses them.
+inline void refuse_what_is_not_finite(CLI::App& command) {
+  const auto finite = [](const std::string& word) {
+    double number = 0;
+    const bool refused = CLI::detail::lexical_cast(word, number) && !std::isfinite(number);
+    return refused ? "'" + word + "' is not a finite number" : std::string();
+  };
+  for (CLI::Option* option : command.get_options()) {
+    if (option->get_type_name().starts_with("FLOAT")) option->check(finite);
+  }
+  for (CLI::App* next : command.get_subcommands({})) refuse_what_is_not_finite(*next);
+}
+
 /// Reads the words into the options that `app` knows, then runs what they ask for; --help and
 /// --version need no more than being read.
 /// @return exit code
 /// Errors: throws Error for words that cannot be used, and what `run` throws.
 inline int run_words(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
   const std::string command = named_command(app, argc, argv);
+  refuse_what_is_not_finite(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -6,7 +6,6 @@
 #include <exception>
 #include <iostream>
 #include <new>
-#include <stdexcept>
 
 #include "interruption.h"
 #include "vicinity/geometry/error.h"
@@ -24,8 +23,9 @@ int exit_code_of(const std::function<int()>& run) noexcept {
   try {
     const int code = run();
     std::cout.flush();
-    if (!std::cout) throw std::runtime_error("standard output could not be written");
-    return code;
+    if (std::cout) return code;
+    std::cerr << "vicinity: standard output could not be written; try a disk with space left\n";
+    return our_failure;
   } catch (const Error& error) {
     std::cerr << "vicinity: " << error.what() << '\n';
     return unusable;

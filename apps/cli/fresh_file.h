@@ -1,42 +1,38 @@
 // SPDX-FileCopyrightText: The Vicinity authors
 // SPDX-License-Identifier: Apache-2.0
 
-/// A file that appears whole or not at all: written beside, then renamed into place.
+/// A file of the command line: whole or not at all, whatever signal comes.
 #pragma once
 
-#include <cstddef>
-#include <cstdio>
 #include <filesystem>
-#include <string>
+#include <memory>
 #include <string_view>
 
 #include "interruption.h"
 
+namespace vicinity {
+class FileBeside;
+}
+
 namespace vicinity::cli {
 
-/// Writes to a temporary file in the same folder. commit() renames it; without commit() the
-/// destructor removes it.
-/// Errors: every function throws Error where the disk is full or the folder cannot be written.
+/// Writes beside the file that `path` names, a symbolic link followed. commit() renames it into
+/// place; without commit() the destructor removes it.
+/// Errors: every function throws Error where the disk is full or the folder cannot be written; the
+/// constructor also for an empty path, and where there is something that is no regular file.
 class FreshFile {
  public:
-  explicit FreshFile(std::filesystem::path path);
+  explicit FreshFile(const std::filesystem::path& path);
   ~FreshFile();
   FreshFile(const FreshFile&) = delete;
   FreshFile& operator=(const FreshFile&) = delete;
 
-  void write(const void* data, std::size_t bytes);
-  void write(std::string_view text) { write(text.data(), text.size()); }
+  void write(std::string_view text);
   void commit();
 
-  /// The temporary file, for libraries that open files themselves.
-  const std::filesystem::path& beside() const noexcept { return beside_; }
-
  private:
-  [[noreturn]] void fail(const char* doing) const;
-
   WhileWriting while_writing_;
-  std::filesystem::path path_, beside_;
-  std::FILE* file_ = nullptr;
+  std::unique_ptr<FileBeside> file_;
 };
 
 }  // namespace vicinity::cli

@@ -4,6 +4,7 @@
 // The command line: words in, one command called, an exit code out.
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -57,6 +58,14 @@ Each of them explains itself with --help, and shows an example.
 
 using Run = std::function<int()>;
 
+// Something to write. An empty name would be taken for one that was not said.
+CLI::Option* add_output(CLI::App& app, const std::string& option, std::filesystem::path& path,
+                        const std::string& does) {
+  return app.add_option(option, path, does)->check([](const std::string& name) {
+    return name.empty() ? std::string("an empty name names nothing to write") : std::string();
+  });
+}
+
 // A subcommand whose options live as long as it may run.
 template <class Options>
 struct Command {
@@ -80,7 +89,9 @@ void add_check(CLI::App& parent, Run& run) {
                                 "vicinity check vessel.stl --units mm");
   auto& [app, options] = command;
   app.add_option("MESH", options->mesh, "STL, OBJ, PLY, glTF, 3MF or DAE file")->required();
-  app.add_option("--units", options->units, "mm, cm, m or in: what one unit of the file means");
+  app.add_option("--units", options->units,
+                 "mm, cm, m or in: what one unit of the file means; a unit that it states itself "
+                 "is not read");
   app.add_flag("--json", options->json, "for programs");
   command.runs(check, run);
 }
@@ -92,8 +103,9 @@ void add_build(CLI::App& parent, Run& run) {
       "  vicinity build vessel.stl --units mm --voxel-size 0.002 -o vessel.vicinity");
   auto& [app, options] = command;
   app.add_option("INPUT", options->input, "scene (.yaml, .yml) or mesh file")->required();
-  app.add_option("-o,--output", options->output, "the field to write")->required();
-  app.add_option("--units", options->units, "of a single mesh: mm, cm, m or in");
+  add_output(app, "-o,--output", options->output, "the field to write")->required();
+  app.add_option("--units", options->units,
+                 "of a single mesh, whatever it states itself: mm, cm, m or in");
   app.add_option("--meshes", options->meshes,
                  "folder that relative mesh paths start at; default: that of the scene file");
   app.add_option("--voxel-size", options->voxel_size, "edge of a voxel [m]");
@@ -127,7 +139,9 @@ void add_export(CLI::App& parent, Run& run) {
       "vicinity export cell.vicinity -o cell.npy --what rank --box 0,0,0,0.5,0.5,0.5");
   auto& [app, options] = command;
   app.add_option("FIELD", options->field, "made by vicinity build")->required();
-  app.add_option("-o,--output", options->output, "file to write; its ending says the format")
+  add_output(app, "-o,--output", options->output,
+             "file to write; its ending says the format; beside NAME.npy, NAME.json is "
+             "written too, with origin and voxel size")
       ->required();
   app.add_option("--what", options->what,
                  "rank (boundary 0, empty -1, inner -2), viscosity, object or distance; default: "
@@ -169,8 +183,8 @@ void add_trace(CLI::App& parent, Run& run) {
       ->capture_default_str();
   app.add_option("--coding", options->coding,
                  "try another one: 32,25,20,... or linear, nonlinear, jnd, paper");
-  app.add_option("-o,--output", options->output, "CSV file; default: standard output");
-  app.add_option("--plot", options->plot, "draw it too: .svg or .png");
+  add_output(app, "-o,--output", options->output, "CSV file; default: standard output");
+  add_output(app, "--plot", options->plot, "draw it too: .svg or .png");
   command.runs(trace, run);
 }
 
@@ -185,7 +199,7 @@ void add_replay(CLI::App& parent, Run& run) {
   add_arm(app, options->arm);
   CLI::Option* const density = add_density(app, options->arm);
   app.add_option("--points", options->arm.points, "body points in all, in place of a density")
-      ->check(CLI::Range(1, 100'000'000))
+      ->check(CLI::Range(std::size_t{1}, BodyPoints::most))
       ->excludes(density);
   add_feel(app, options->arm);
   app.add_option("--trajectory", options->trajectory,
@@ -201,8 +215,8 @@ void add_replay(CLI::App& parent, Run& run) {
   app.add_flag("--realtime", options->real_time, "at the rate's pace, not as fast as it can");
   app.add_flag("--check-only", options->check_only,
                "load field and robot (and log), say what is odd, tick nothing");
-  app.add_option("-o,--output", options->output, "what came out, by tick: CSV, .jsonl or .mcap");
-  app.add_option("--plot", options->plot, "draw it: .svg or .png");
+  add_output(app, "-o,--output", options->output, "what came out, by tick: CSV, .jsonl or .mcap");
+  add_output(app, "--plot", options->plot, "draw it: .svg or .png");
   app.add_flag("--json", options->json, "the summary, for programs");
   command.runs(replay, run);
 }
@@ -225,11 +239,11 @@ void add_serve(CLI::App& parent, Run& run) {
                  "address to listen at; any but the loopback needs --token")
       ->capture_default_str();
   app.add_option("--token", options->token, "what a page must know to be let in");
-  app.add_option("--folder", options->folder, "for uploads, saved scenes and fields")
+  add_output(app, "--folder", options->folder, "for uploads, saved scenes and fields")
       ->capture_default_str();
   app.add_option("--recording", options->recordings,
                  "outputs of vicinity replay, and joint logs, that the page can play");
-  app.add_option("--shot", options->shot, "draw the page into this .png, and end");
+  add_output(app, "--shot", options->shot, "draw the page into this .png, and end");
   app.add_option("--shot-view", options->shot_view,
                  "what of it: key=value&key=value, as in the page's address");
   app.add_option("--seconds", options->seconds, "end after so long; default: Ctrl-C")
@@ -246,8 +260,9 @@ void add_slice(CLI::App& parent, Run& run) {
   app.add_option("--x", options->x, "plane across x [m]");
   app.add_option("--y", options->y, "plane across y [m]");
   app.add_option("--z", options->z, "plane across z [m]");
-  app.add_option("--box", options->box, "only this part: x,y,z,x,y,z [m]");
-  app.add_option("-o,--output", options->output, "picture to write: .png or .svg")->required();
+  app.add_option("--box", options->box,
+                 "only this part, which the plane passes through: x,y,z,x,y,z [m]");
+  add_output(app, "-o,--output", options->output, "picture to write: .png or .svg")->required();
   command.runs(slice, run);
 }
 
@@ -276,7 +291,7 @@ void add_demo(CLI::App& parent, Run& run) {
                                "Build, trace and picture a small hot cell; needs nothing of yours",
                                "vicinity demo -o my-demo");
   auto& [app, options] = command;
-  app.add_option("-o,--output", options->folder, "folder to leave everything in")
+  add_output(app, "-o,--output", options->folder, "folder to leave everything in")
       ->capture_default_str();
   command.runs(demo, run);
 }
@@ -289,7 +304,7 @@ void add_simulate(CLI::App& parent, Run& run) {
   auto& [app, options] = command;
   app.add_option("SCENE", options->scene, "scene with a 'robot' block, or with --robot");
   app.add_flag("--demo", options->demo, "the demo's hot cell, its arm and six tasks");
-  app.add_option("-o,--output", options->folder, "folder to leave everything in")->required();
+  add_output(app, "-o,--output", options->folder, "folder to leave everything in")->required();
   app.add_option("--trials", options->trials, "operators in each cell")->capture_default_str();
   app.add_option("--seed", options->seed, "same seed, same numbers")
       ->capture_default_str()
@@ -321,7 +336,7 @@ void add_reproduce(CLI::App& parent, Run& run) {
       parent, "reproduce", "Make every figure and table of the paper, ours beside theirs",
       "vicinity reproduce -o report\n  vicinity reproduce --only fig22 -o report");
   auto& [app, options] = command;
-  app.add_option("-o,--output", options->folder, "folder to leave the report in")->required();
+  add_output(app, "-o,--output", options->folder, "folder to leave the report in")->required();
   app.add_option("--only", options->only, "one item, as fig22 or table1");
   command.runs(reproduce, run);
 }

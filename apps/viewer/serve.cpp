@@ -15,10 +15,12 @@
 #include <thread>
 
 #include "arguments.h"
+#include "outputs.h"
 #include "page_files.h"
 #include "probe.h"
 #include "progress_bar.h"
 #include "screenshot.h"
+#include "shot_view.h"
 #include "vicinity/geometry/error.h"
 #include "vicinity/robot/urdf_file.h"
 #include "vicinity/viscosity/build_field.h"
@@ -101,7 +103,13 @@ AxisVector start_of(const ServeOptions& options, const RobotModel& robot, bool p
     const JointLimits& limits = robot.joints[static_cast<std::size_t>(robot.coordinates[c])].limits;
     const bool limited = std::isfinite(limits.lower) && std::isfinite(limits.upper);
     if (!said.empty()) {
-      q[at] = std::clamp(said[c], limits.lower, limits.upper);
+      if (said[c] < limits.lower || said[c] > limits.upper) {
+        throw Error({.where = "--start",
+                     .what = fmt::format("joint '{}' cannot be there", cli::joint_name(robot, c)),
+                     .found = fmt::format("{:g}", said[c]),
+                     .expected = fmt::format("{:g} to {:g}", limits.lower, limits.upper)});
+      }
+      q[at] = said[c];
     } else if (limited && (probe || limits.lower > 0 || limits.upper < 0)) {
       q[at] = 0.5 * (limits.lower + limits.upper);
     }
@@ -238,7 +246,26 @@ void check(const ServeOptions& options) {
                  .found = std::to_string(options.port),
                  .expected = "0 to 65535; 0 takes one that is free"});
   }
-  if (options.shot.empty()) return;
+  if (std::filesystem::exists(options.folder) && !std::filesystem::is_directory(options.folder)) {
+    throw Error({.where = "--folder " + options.folder.string(),
+                 .what = "is there, and is no folder",
+                 .hint = "another --folder"});
+  }
+  for (const auto& recording : options.recordings) {
+    if (std::filesystem::is_regular_file(recording)) continue;
+    throw Error({.where = "--recording " + recording.string(),
+                 .what = "there is no such file",
+                 .hint = "an output of vicinity replay, or a joint log"});
+  }
+  if (options.shot.empty()) {
+    if (options.shot_view.empty()) return;
+    throw Error({.where = "--shot-view", .what = "is for a picture", .hint = "--shot PICTURE.png"});
+  }
+  check_shot_view(options.shot_view);
+  std::vector<std::filesystem::path> inputs = cli::files_of(options.arm);
+  inputs.push_back(options.input);
+  inputs.insert(inputs.end(), options.recordings.begin(), options.recordings.end());
+  cli::check_outputs({{"--shot", options.shot}}, inputs);
   if (options.shot.extension() != ".png") {
     throw Error({.where = "--shot " + options.shot.string(),
                  .what = "pictures of the page are PNG files",

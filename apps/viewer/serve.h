@@ -24,16 +24,17 @@ struct ServeOptions {
   int port = 8080;
   std::string token;
   std::filesystem::path folder = "vicinity-viewer";  ///< of uploads, saved scenes and fields
-  std::vector<std::filesystem::path> recordings;
-  std::filesystem::path shot;     ///< .png: draw the page there, and end
+  std::vector<std::filesystem::path> recordings;     ///< each is there
+  std::filesystem::path shot;                        ///< .png: draw the page there, and end
   std::string shot_view;          ///< added to the address of the page that is drawn
   std::optional<double> seconds;  ///< end by itself
 };
 
 /// Serves until Ctrl-C, or as the options say.
 /// @return 0
-/// Errors: throws Error for a field, scene, robot or address that cannot be used, and where --shot
-/// has no browser or no page.
+/// Errors: throws Error for a field, scene, robot or address that cannot be used, for recordings
+/// that are not there, a folder that is none, joints beyond their limits and words that the page
+/// does not know, and where --shot has no browser or no page.
 int serve(const ServeOptions& options, std::ostream& out, std::ostream& err);
 
 }  // namespace vicinity::viewer

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <limits>
 
-#include "file_beside.h"
+#include "geometry/file_beside.h"
 #include "vicinity/geometry/error.h"
 
 namespace vicinity {

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -24,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/file_beside.h"
 #include "geometry/whole_loops.h"
 #include "mesh_error.h"
 #include "vertex_weld.h"
@@ -41,7 +41,7 @@ constexpr std::size_t header_size = 84;
 constexpr std::size_t record_size = 50;
 constexpr std::size_t corners_offset = 12;
 // Reading this many records at a time never holds the whole file and keeps them in the cache.
-constexpr std::size_t records_per_read = 1024;
+constexpr std::size_t records_per_read = 1024, records_per_write = records_per_read;
 
 std::size_t binary_size(std::uint32_t triangles) { return header_size + record_size * triangles; }
 
@@ -400,32 +400,26 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path) {
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   std::memcpy(&header[header_size - sizeof count], &count, sizeof count);
 
-  std::filesystem::path beside = path;
-  beside += fmt::format(".{}.partial", getpid());
-  std::ofstream file(beside, std::ios::binary | std::ios::trunc);
-  file.write(header.data(), header.size());
-  std::array<char, record_size> record{};
-  for (const auto& [a, b, c] : mesh.triangles) {
+  FileBeside file(path);
+  file.write(std::as_bytes(std::span(header)));
+  std::vector<std::byte> records;
+  records.reserve(record_size * std::min(mesh.triangles.size(), records_per_write));
+  for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+    const auto& [a, b, c] = mesh.triangles[n];
     // The normal is that of the rounded corners, so that a file read and written again is the same.
     const Eigen::Vector3f p = mesh.vertices[a].cast<float>(), q = mesh.vertices[b].cast<float>(),
                           r = mesh.vertices[c].cast<float>();
     const Vec3 edge = (q - p).cast<double>(), other = (r - p).cast<double>();
     Eigen::Matrix<float, 3, 4> numbers;
     numbers << edge.cross(other).normalized().cast<float>(), p, q, r;
-    std::memcpy(record.data(), numbers.data(), 12 * sizeof(float));
-    file.write(record.data(), record.size());
+    records.resize(records.size() + record_size);
+    std::memcpy(&records[records.size() - record_size], numbers.data(), 12 * sizeof(float));
+    if (records.size() < record_size * records_per_write) continue;
+    file.write(records);
+    records.clear();
   }
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(beside, path, error);
-  if (!file || error) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw Error({.where = path.string(),
-                 .what = "the file cannot be written",
-                 .found = error ? error.message() : "a failed write",
-                 .hint = "checking the folder, its permissions and the space left"});
-  }
+  file.write(records);
+  file.move_into_place();
 }
 
 }  // namespace vicinity

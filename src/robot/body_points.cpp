@@ -18,7 +18,6 @@
 namespace vicinity {
 namespace {
 
-constexpr double most_points = 1e8;
 constexpr std::size_t smallest_part = 8;  // points whose order among themselves does not matter
 
 // FNV-1a: a link's samples depend on its name, and not on which other links there are.
@@ -101,12 +100,16 @@ void choose_counts(std::vector<Surface>& surfaces, const BodyPointOptions& optio
                       [](double sum, const Surface& s) { return sum + s.area; });
   const double wanted =
       options.total ? static_cast<double>(*options.total) : options.points_per_m2 * total_area;
-  if (!(wanted <= most_points) || !std::isfinite(total_area)) {
-    throw Error({.where = "body points",
-                 .what = "too many points",
-                 .found = fmt::format("{:.0f} on {:.3g} m²", wanted, total_area),
-                 .expected = fmt::format("at most {:.0f}", most_points),
-                 .hint = "meshes in metres, or fewer points_per_m2"});
+  if (!(wanted <= static_cast<double>(BodyPoints::most)) || !std::isfinite(total_area)) {
+    const std::string density =
+        options.total ? "" : fmt::format(", {:g} on each of them", options.points_per_m2);
+    throw Error(
+        {.where = "body points",
+         .what = "the arm has too many",
+         .found = fmt::format("{:.4g} on {:.4g} m² of surface{}", wanted, total_area, density),
+         .expected = fmt::format("at most {}", BodyPoints::most),
+         .hint = "fewer points, or, where the surface is far too large, meshes in metres: a "
+                 "URDF's scale=\"0.001 0.001 0.001\" makes them of millimetres"});
   }
   if (wanted == 0) {
     surfaces.clear();

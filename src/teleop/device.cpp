@@ -180,15 +180,18 @@ std::span<const Device> known_devices() {
 
 const Device& known_device(std::string_view name) {
   std::vector<std::string> names;
+  std::string list;
   for (const Device& device : known_devices()) {
     if (device.name == name) return device;
     names.push_back(device.name);
+    list += (list.empty() ? "" : ", ") + device.name;
   }
   const std::string nearest = quoted(nearest_word(name, names));
   throw Error(
       {.where = "device",
        .what = "no device of this name is known",
        .found = "'" + std::string(name) + "'",
+       .expected = "one of " + list,
        .hint = (nearest.empty() ? "" : nearest + ", or ") + "a file that describes your own"});
 }
 

@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstddef>
 
-#include "file_beside.h"
+#include "geometry/file_beside.h"
 #include "vicinity/geometry/error.h"
 
 namespace vicinity {

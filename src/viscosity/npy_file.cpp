@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "file_beside.h"
+#include "geometry/file_beside.h"
 
 namespace vicinity {
 namespace {

@@ -55,7 +55,7 @@ void check_object(const SceneObject& object, const std::string& where) {
 
 Error missing_unit(const TriangleMesh& mesh, const std::string& where) {
   return Error({.where = where,
-                .what = "the mesh file carries no unit and none is stated",
+                .what = "the mesh has no unit: none is stated, and none is read from mesh files",
                 .found = size_in_units(mesh.bounds()),
                 .expected = "units: mm, cm, m or in"});
 }

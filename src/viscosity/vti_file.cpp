@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "file_beside.h"
+#include "geometry/file_beside.h"
 
 namespace vicinity {
 

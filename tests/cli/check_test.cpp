@@ -58,6 +58,30 @@ TEST(Check, WithoutAUnitItShowsAllThreeReadings) {
   }
 }
 
+// Such a file says "inch", which is not heeded: nobody may be told that it says nothing.
+TEST(Check, AUnitInTheFileIsNotDenied) {
+  const Folder folder;
+  folder.write("plate.dae", R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="inch" meter="0.0254"/><up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 2 0</float_array><technique_common>
+<accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"/></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>
+)");
+  const Answer check = folder.run({"check", "plate.dae"});
+  EXPECT_EQ(check.code, 0) << check.err;
+  EXPECT_THAT(check.out, HasSubstr("is not read: say --units"));
+  const Answer build = folder.run({"build", "plate.dae", "-o", "f.vicinity"});
+  EXPECT_EQ(build.code, 2);
+  EXPECT_THAT(build.err, HasSubstr("none is read from mesh files"));
+}
+
 TEST(Check, AFileWithoutAMeshIsUnusableForPeopleAndPrograms) {
   const Folder folder;
   folder.write("cut.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0");

@@ -5,8 +5,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 
 #include "program.h"
 
@@ -61,6 +63,9 @@ const Refusal refusals[] = {
      {"build", "square.stl", "--units", "mn", "-o", "x.f"},
      "mm, cm, m or in"},
     {"UnitsOfAScene", {"build", "scene.yaml", "--units", "mm", "-o", "x.f"}, "--units"},
+    {"FolderOfMeshesOfAMesh",
+     {"build", "square.stl", "--units", "mm", "--meshes", "nowhere", "-o", "x.f"},
+     "--meshes"},
     {"MeshWithoutUnit", {"build", "square.stl", "-o", "x.f"}, "inch"},
     {"MeshOfUnknownKind", {"check", "garbage.step"}, "garbage.step"},
     {"UnknownShape", {"build", "scene.yaml", "-o", "x.f", "--shape", "spere"}, "sphere"},
@@ -81,9 +86,12 @@ const Refusal refusals[] = {
     {"OutputThatIsAFolder", {"build", "scene.yaml", "-o", "."}, "."},
     {"NegativeThreads", {"build", "scene.yaml", "-o", "x.f", "--threads", "-3"}, "--threads"},
     {"QueryWithTwoNumbers", {"query", "f.vicinity", "1", "2"}, "POINT"},
-    {"QueryOfNoPoint", {"query", "f.vicinity", "1", "2", "nan"}, "coordinates"},
+    {"QueryOfNoPoint", {"query", "f.vicinity", "1", "2", "nan"}, "'nan' is not a finite number"},
     {"SliceWithoutPlane", {"slice", "f.vicinity", "-o", "x.png"}, "--z"},
     {"SliceOutsideTheWorkspace", {"slice", "f.vicinity", "--z", "99", "-o", "x.png"}, "99"},
+    {"SliceBesideItsBox",
+     {"slice", "f.vicinity", "--z", "0", "--box", "-1,-1,0.01,1,1,0.02", "-o", "x.png"},
+     "z from 0.01 to 0.02 m"},
     {"SliceAsUnknownPicture", {"slice", "f.vicinity", "--z", "0", "-o", "x.bmp"}, ".png"},
     {"TraceFromNowhere", {"trace", "f.vicinity", "--from", "here", "--to", "0,0,0"}, "--from"},
     {"TraceWithoutSpeed",
@@ -102,6 +110,11 @@ const Refusal refusals[] = {
     {"ExportOutsideTheWorkspace",
      {"export", "f.vicinity", "-o", "x.npy", "--box", "50,50,50,51,51,51"},
      "--box"},
+    {"BuildIntoNothing", {"build", "scene.yaml", "-o", ""}, "an empty name"},
+    {"DemoIntoNothing", {"demo", "-o", ""}, "an empty name"},
+    {"PlotOfNoName",
+     {"trace", "f.vicinity", "--from", "0,0,0", "--to", "1,0,0", "--plot", ""},
+     "an empty name"},
     {"DemoInAFile", {"demo", "-o", "scene.yaml"}, "scene.yaml"},
 };
 
@@ -144,6 +157,49 @@ TEST_P(Refused, WithOneSentence) {
 
 INSTANTIATE_TEST_SUITE_P(, Refused, testing::ValuesIn(refusals),
                          [](const auto& which) { return which.param.claim; });
+
+TEST(Numbers, ThatAreNotFiniteAreRefusedByEveryCommand) {
+  const Folder folder;
+  const std::vector<std::vector<std::string>> commands = {
+      {"build", "s.yaml", "-o", "f", "--voxel-size", "nan"},
+      {"build", "s.yaml", "-o", "f", "--skin", "inf"},
+      {"trace", "f", "--from", "0,0,0", "--to", "1,0,0", "--speed=-inf"},
+      {"trace", "f", "--from", "0,0,0", "--to", "1,0,0", "--area", "1e999"},
+      {"slice", "f", "-o", "s.png", "--z", "nan"},
+      {"query", "f", "0", "inf", "0"},
+      {"replay", "f", "--points-per-m2", "nan"},
+      {"replay", "f", "--rate", "nan"},
+      {"bench", "tick", "--seconds", "nan"},
+      {"simulate", "--demo", "-o", "d", "--step-ms", "nan"},
+      {"serve", "f", "--seconds", "nan"},
+  };
+  for (const auto& command : commands) {
+    const Answer answer = folder.run(command);
+    EXPECT_EQ(answer.code, 2) << command[0];
+    EXPECT_THAT(answer.err, testing::AnyOf(HasSubstr("is not a finite number; try"),
+                                           HasSubstr("built without the viewer")))
+        << command[0];
+  }
+  EXPECT_TRUE(folder.files().empty());
+}
+
+// A limit on file size fails a write as a full disk does.
+TEST(FullDisk, UnderStandardOutputIsNoFaultOfTheProgram) {
+  const Folder folder;
+  folder.write("scene.yaml", small_scene);
+  ASSERT_EQ(folder.run({"build", "scene.yaml", "-o", "f.vicinity"}).code, 0);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);  // children take it over
+  const rlimit small = {200, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const Answer answer = folder.run({"info", "f.vicinity", "--json"});
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_THAT(answer.err, HasSubstr("standard output could not be written"));
+  EXPECT_THAT(answer.err, testing::Not(HasSubstr("should not have happened")));
+}
 
 TEST(Help, AloneItIsFriendly) {
   const Folder folder;

@@ -109,6 +109,7 @@ TEST_F(Replay, ReadsTheSameMotionHoweverItIsWritten) {
       {"byte order mark, CRLF, blanks and quotes", "\xEF\xBB\xBF\"t\", turn ,\"bend\", slide",
        " , ", "\r\n", "", 1, 1, 1},
       {"semicolons and a blank last line", "\n\nt;turn;bend;slide", ";", "\n\n", "", 1, 1, 1},
+      {"a comma at the end of each line", "t,turn,bend,slide", ",", ",\n", "", 1, 1, 1},
       {"tabs, and a name of its own for time", "stamp\tturn\tbend\tslide", "\t", "\n", "t=stamp", 1,
        1, 1},
   };
@@ -144,6 +145,17 @@ TEST_F(Replay, UnwrapsAContinuousJointAndSaysSo) {
   ASSERT_EQ(answer.code, 0) << answer.err;
   EXPECT_THAT(answer.out, HasSubstr("'turn' wraps around 2 times"));
   expect_equal(rows_of(*folder_ / "felt.csv"), direct(parabola, 901), 1e-6);
+}
+
+TEST_F(Replay, AsksForTheUnitOfTimeOnlyWhereNoneIsNamed) {
+  for (const bool named : {false, true}) {
+    const std::string header = named ? "t [ms],turn,bend,slide\n" : "t,turn,bend,slide\n";
+    folder_->write("slow.csv", header + "0,0,0,0\n4000,0.01,0,0\n8000,0.02,0,0\n");
+    const Answer answer = replay("slow.csv", {"--check-only"});
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_THAT(answer.out, HasSubstr(named ? "one sample every 4 s" : "one sample every 4000 s"));
+    EXPECT_EQ(answer.out.find("milliseconds") == std::string::npos, named);
+  }
 }
 
 // Clocks count seconds since 1970: ten digits before the point and three behind.

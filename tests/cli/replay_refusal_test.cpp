@@ -43,12 +43,17 @@ const ReplayRefusal replay_refusals[] = {
      "t,turn,bend,slide\n0,0,0,0\n0.01,0,0",
      {},
      "log.csv:3: the line is too short"},
+    {"DecimalCommas",
+     "t,turn,bend,slide\n0,0,0,0,\n0,01,0,02,0,0\n",
+     {},
+     "log.csv:3: the line is too long: a decimal comma?; found 6 cells where the header has 4"},
     {"EmptyLog", "", {}, "log.csv"},
     {"LogOfBlankLines", "\n\n  \n", {}, "no header"},
     {"HeaderAlone", "t,turn,bend,slide\n", {}, "at least two samples"},
     {"OneSample", "t,turn,bend,slide\n0,0,0,0\n", {}, "at least two samples"},
     {"NoTime", "Time,turn,bend,slide\n0,0,0,0\n", {}, "--columns t=Time"},
     {"NoColumnForAJoint", "t,turn,bent,slide\n0,0,0,0\n", {}, "--columns bend=bent"},
+    {"TheTimeIsNotProposedForAJoint", good, {"--columns", "bend=T"}, "bend=COLUMN"},
     {"TwoColumnsOfOneName", "t,turn,turn,bend,slide\n0,0,0,0,0\n", {}, "columns 2 and 3"},
     {"UnitThatDoesNotFit", "t,turn [mm],bend,slide\n0,0,0,0\n", {}, "one of rad, deg, °"},
     {"VelocityOfSomeJoints", "t,turn,bend,slide,qd_turn\n0,0,0,0,0\n", {}, "1 of 3"},
@@ -66,7 +71,8 @@ const ReplayRefusal replay_refusals[] = {
     {"BaseOfThreeNumbers", good, {"--base", "0,0,0"}, "6 numbers"},
     {"LinkToExcludeThatIsNone", good, {"--exclude", "uper"}, "uper"},
     {"ToolThatIsNone", good, {"--tool", "fingre"}, "try finger"},
-    {"DeviceThatIsNone", good, {"--device", "tuch"}, "touch"},
+    {"DeviceThatIsNone", good, {"--device", "tuch"}, "try 'touch'"},
+    {"DeviceThatIsLikeNone", good, {"--device", "foo"}, "one of falcon, lambda.7, omega.3"},
     {"DeviceFileThatIsNone", good, {"--device", "nowhere.yaml"}, "nowhere.yaml"},
     {"StrictWithoutKnownDamping", good, {"--device", "touch"}, "device mode"},
     {"ModeThatIsNone", good, {"--device", "touch", "--mode", "lax"}, "strict, device"},
@@ -78,6 +84,8 @@ const ReplayRefusal replay_refusals[] = {
     {"PointsByNumberAndDensity", good, {"--points", "9", "--points-per-m2", "9"}, "--points"},
     {"NoPoints", good, {"--points", "0"}, "--points"},
     {"NegativeDensity", good, {"--points-per-m2", "-5"}, "-5"},
+    {"NoDensity", good, {"--points-per-m2", "0"}, "a density above zero"},
+    {"NoLinkThatFeels", good, {"--exclude", "upper,lower,finger"}, "fewer links in --exclude"},
     {"PictureOfUnknownKind", good, {"--plot", "felt.bmp"}, ".png"},
     {"PictureInNoFolder", good, {"--plot", "nowhere/felt.svg"}, "nowhere"},
     {"OutputThatIsAFolder", good, {"-o", "."}, "is a folder"},
@@ -130,6 +138,10 @@ INSTANTIATE_TEST_SUITE_P(, ReplayRefused, testing::ValuesIn(replay_refusals),
 TEST_F(ReplayRefused, WithoutAFieldARobotOrALog) {
   folder_->write("log.csv", good);
   folder_->write("garbage", std::string(5000, 'x'));
+  folder_->write("flat.urdf",
+                 "<robot name='flat'><link name='a'/><link name='b'><collision><geometry>"
+                 "<box size='-1 1 1'/></geometry></collision></link><joint name='turn' "
+                 "type='continuous'><parent link='a'/><child link='b'/></joint></robot>");
   const auto refused = [&](const std::vector<std::string>& more, const std::string& says) {
     std::vector<std::string> arguments = {"replay"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -142,6 +154,7 @@ TEST_F(ReplayRefused, WithoutAFieldARobotOrALog) {
   refused({"f.vicinity", "--trajectory", "log.csv"}, "--robot");
   refused({"f.vicinity", "--robot", "nowhere.urdf", "--trajectory", "log.csv"}, "nowhere.urdf");
   refused({"f.vicinity", "--robot", "garbage", "--trajectory", "log.csv"}, "garbage");
+  refused({"f.vicinity", "--robot", "flat.urdf", "--trajectory", "log.csv"}, "size x");
   refused({"f.vicinity", "--robot", "arm.urdf"}, "--trajectory");
   refused({"f.vicinity", "--robot", "arm.urdf", "--trajectory", "nowhere.csv"}, "nowhere.csv");
   refused({"f.vicinity", "--robot", "arm.urdf", "--trajectory", "."}, ".: the log");

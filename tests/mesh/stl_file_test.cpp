@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -109,6 +110,9 @@ TEST(StlFile, WritingLeavesNothingBesideTheFileAndNothingWhenItFails) {
   EXPECT_THROW(write_stl(primitive::box(Vec3::Ones()), folder.path() / "none" / "box.stl"), Error);
   std::filesystem::create_directories(folder.path() / "taken.stl" / "by a folder");
   EXPECT_THROW(write_stl(primitive::box(Vec3::Ones()), folder.path() / "taken.stl"), Error);
+  ASSERT_EQ(::mkfifo((folder.path() / "pipe.stl").c_str(), 0600), 0);
+  EXPECT_THROW(write_stl(primitive::box(Vec3::Ones()), folder.path() / "pipe.stl"), Error);
+  EXPECT_TRUE(std::filesystem::is_fifo(folder.path() / "pipe.stl"));
   TriangleMesh bad = primitive::box(Vec3::Ones());
   bad.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(write_stl(bad, folder.path() / "bad.stl"), Error);
@@ -116,7 +120,7 @@ TEST(StlFile, WritingLeavesNothingBesideTheFileAndNothingWhenItFails) {
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
     names.push_back(entry.path().filename());
   }
-  EXPECT_THAT(names, ::testing::UnorderedElementsAre("box.stl", "taken.stl"));
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre("box.stl", "taken.stl", "pipe.stl"));
 }
 
 TEST(StlFile, WeldsAsAMapOfExactCoordinatesWouldInOrderOfFirstAppearance) {

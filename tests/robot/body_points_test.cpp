@@ -317,6 +317,19 @@ TEST(BodyPoints, WhatCannotBeMeantIsRefused) {
   EXPECT_THROW(sample_body_points(robot, {.named = {{"link_0", {.p_LR = {nan, 0, 0}}}}}), Error);
 }
 
+TEST(BodyPoints, AMeshInMillimetresIsRefusedAtOnceWithItsAreaAndDensity) {
+  // A box of 0.2 m, taken for 200 m.
+  const RobotModel robot = robot_of({primitive::box({200, 200, 200})});
+  try {
+    sample_body_points(robot);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("4.8e+08 on 2.4e+05 m² of surface, 2000 on each"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("of millimetres"));
+  }
+  EXPECT_THROW(sample_body_points(robot, {.total = BodyPoints::most + 1}), Error);
+}
+
 TEST(BodyPoints, ARobotWithoutSurfaceHasNone) {
   RobotModel robot;
   robot.links.push_back({"frame", {}});

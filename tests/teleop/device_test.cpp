@@ -51,6 +51,7 @@ TEST(Device, ANameThatIsAlmostKnownIsPointedOut) {
     FAIL();
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), HasSubstr("try 'sigma.7'"));
+    for (const Device& device : known_devices()) EXPECT_THAT(e.what(), HasSubstr(device.name));
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -76,6 +77,35 @@ TEST_F(FieldFile, WhereItCannotBeWrittenNothingChanges) {
   std::filesystem::create_directory(folder_ / "taken");
   EXPECT_THROW(save_field(field, folder_ / "taken"), Error);
   EXPECT_EQ(files_in_folder(), 1u);
+}
+
+TEST_F(FieldFile, ASymbolicLinkStaysOneAndWhatItLeadsToIsReplaced) {
+  namespace fs = std::filesystem;
+  fs::create_directory(folder_ / "far");
+  write(folder_ / "far" / "a.vicinity", "old");
+  fs::create_symlink("far/a.vicinity", folder_ / "near");
+  fs::create_symlink("near", folder_ / "link");
+  fs::create_symlink("far/new.vicinity", folder_ / "to_nothing");
+  for (const char* link : {"link", "to_nothing"}) {
+    save_field(some_field(1), folder_ / link);
+    EXPECT_TRUE(fs::is_symlink(folder_ / link)) << link;
+    EXPECT_TRUE(std::ranges::equal(open_field(folder_ / link).image(), some_field(1).image()));
+  }
+  EXPECT_TRUE(fs::is_symlink(folder_ / "near"));
+  fs::create_symlink("loop", folder_ / "loop");
+  EXPECT_THROW(save_field(some_field(1), folder_ / "loop"), Error);
+  EXPECT_EQ(files_in_folder(), 5u);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "far"), {}), 2);
+}
+
+TEST_F(FieldFile, APipeIsNotReplaced) {
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  std::filesystem::create_symlink("pipe", folder_ / "link");
+  EXPECT_THROW(save_field(some_field(1), folder_ / "pipe"), Error);
+  EXPECT_THROW(save_field(some_field(1), folder_ / "link"), Error);
+  EXPECT_THROW(save_field(some_field(1), ""), Error);
+  EXPECT_TRUE(std::filesystem::is_fifo(folder_ / "pipe"));
+  EXPECT_EQ(files_in_folder(), 2u);
 }
 
 TEST_F(FieldFile, AFullDiskLeavesTheOldFileAndNothingElse) {

@@ -151,11 +151,11 @@ TickCost measure(const Arm& arm, const ViscosityField& field, Sway sway, std::si
 std::vector<std::size_t> point_counts(const std::string& text) {
   std::vector<std::size_t> counts;
   for (const double n : numbers_from("--points", text)) {
-    if (!(n >= 1 && n <= 1e8) || n != std::floor(n)) {
+    if (!(n >= 1 && n <= static_cast<double>(BodyPoints::most)) || n != std::floor(n)) {
       throw Error({.where = "--points",
                    .what = "is no number of points",
                    .found = fmt::format("{:g}", n),
-                   .expected = "whole numbers from 1 to 100,000,000",
+                   .expected = "whole numbers from 1 to " + grouped(BodyPoints::most),
                    .hint = "1000,100000"});
     }
     counts.push_back(static_cast<std::size_t>(n));

@@ -16,6 +16,7 @@
 #include "arguments.h"
 #include "field_summary.h"
 #include "interruption.h"
+#include "outputs.h"
 #include "progress_bar.h"
 #include "readable.h"
 #include "vicinity/mesh/mesh_file.h"
@@ -42,9 +43,13 @@ bool is_scene(const std::filesystem::path& path) {
 }
 
 Scene scene_of_one_mesh(const BuildOptions& options) {
+  if (!options.meshes.empty()) {
+    throw Error(
+        {.where = "--meshes", .what = "is for a scene; a single mesh has a path of its own"});
+  }
   if (options.units.empty()) {
     throw Error({.where = options.input.string(),
-                 .what = "has no unit, for mesh files carry none",
+                 .what = "has no unit: none is stated, and none is read from mesh files",
                  .found = size_in_units(read_mesh(options.input).bounds()),
                  .hint = "--units with the reading that is right"});
   }
@@ -169,11 +174,20 @@ std::string in_words(const BuildOptions& options, const BuildResult& result,
   return text;
 }
 
+std::vector<std::filesystem::path> files_read(const BuildOptions& options, const Scene& scene) {
+  std::vector<std::filesystem::path> files = {options.input};
+  for (const SceneObject& object : scene.objects) {
+    if (const auto* mesh = std::get_if<MeshFile>(&object.shape)) files.push_back(mesh->path);
+  }
+  return files;
+}
+
 }  // namespace
 
 int build(const BuildOptions& options, std::ostream& out, std::ostream& err) {
   Scene scene = is_scene(options.input) ? scene_from_file(options) : scene_of_one_mesh(options);
   apply(options, scene);
+  check_outputs({{"-o", options.output}}, files_read(options, scene));
 
   double seconds_writing = 0;
   const BuildResult result = [&] {

@@ -51,8 +51,10 @@ std::string in_words(const MeshInspection& found, const Vec3& size, const CheckO
       grouped(found.triangles), found.triangles == 1 ? "" : "s", found.closed ? "closed" : "open",
       grouped(found.shells), found.shells == 1 ? "" : "s");
   text += options.units.empty()
-              ? fmt::format("  size  {}\n        (no unit in the file: say --units)\n",
-                            size_in_units(found.bounds))
+              ? fmt::format(
+                    "  size  {}\n        (a unit in the file, if there is one, is not read: say "
+                    "--units)\n",
+                    size_in_units(found.bounds))
               : fmt::format("  size  {:.4g} x {:.4g} x {:.4g} m\n", size.x(), size.y(), size.z());
   if (!found.problems.empty()) text += '\n';
   for (const MeshProblem& problem : found.problems) {

@@ -12,6 +12,7 @@
 
 #include "arguments.h"
 #include "interruption.h"
+#include "outputs.h"
 #include "progress_bar.h"
 #include "readable.h"
 #include "vdb/vdb_file.h"
@@ -55,6 +56,12 @@ int export_field(const ExportOptions& options, std::ostream& out, std::ostream& 
   } else if (format == Format::vdb) {
     quantities = usual_vdb_quantities;
   }
+
+  std::vector<Output> outputs = {{"-o", options.output}};
+  if (format == Format::npy) {
+    outputs.push_back({"-o", std::filesystem::path(options.output).replace_extension(".json")});
+  }
+  check_outputs(outputs, {options.field});
 
   const ViscosityField field = open_field(options.field);
   const Workspace& grid = field.workspace();

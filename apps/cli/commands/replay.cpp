@@ -13,6 +13,7 @@
 #include "drag_words.h"
 #include "fresh_file.h"
 #include "interruption.h"
+#include "outputs.h"
 #include "picture/canvas.h"
 #include "progress_bar.h"
 #include "replay/arm.h"
@@ -65,9 +66,6 @@ void refuse_unwritable(const ReplayOptions& options, double first_s, double last
   if (!options.plot.empty()) Canvas(options.plot, 1, 1);
   for (const std::filesystem::path& path : {options.output, options.plot}) {
     if (path.empty()) continue;
-    if (std::filesystem::is_directory(path)) {
-      throw Error({.where = path.string(), .what = "is a folder", .expected = "a file to write"});
-    }
     const FreshFile trial(path);
   }
 }
@@ -123,6 +121,9 @@ int replay(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
   if (options.trajectory.empty() && !options.check_only) {
     throw Error({.what = "no joint log is given", .hint = "--trajectory CSV, or --check-only"});
   }
+  std::vector<std::filesystem::path> inputs = files_of(options.arm);
+  inputs.insert(inputs.end(), {options.field, options.trajectory});
+  check_outputs({{"-o", options.output}, {"--plot", options.plot}}, inputs);
   const ViscosityField field = recoded(open_field(options.field), options.coding);
   Arm arm = read_arm(options.arm);
   std::optional<JointLog> log;

@@ -8,6 +8,7 @@
 #include <array>
 
 #include "arguments.h"
+#include "outputs.h"
 #include "picture/slice_picture.h"
 #include "vicinity/viscosity/field_file.h"
 
@@ -31,7 +32,17 @@ int slice(const SliceOptions& options, std::ostream& out, std::ostream&) {
                  .expected = "one",
                  .hint = "--z 0.04"});
   }
-  if (!options.box.empty()) plane.part = box_from("--box", options.box);
+  if (!options.box.empty()) {
+    plane.part = box_from("--box", options.box);
+    const double lo = plane.part->min()[plane.axis], hi = plane.part->max()[plane.axis];
+    if (plane.position < lo || plane.position > hi) {
+      throw Error({.where = "--box",
+                   .what = "the plane does not pass through it",
+                   .found = fmt::format("{} from {:g} to {:g} m", "xyz"[plane.axis], lo, hi),
+                   .expected = fmt::format("{:g} m in between", plane.position)});
+    }
+  }
+  check_outputs({{"-o", options.output}}, {options.field});
   draw_slice(open_field(options.field), plane, options.output);
   out << fmt::format("{}: the layers at {} = {:g} m\n", options.output.string(), "xyz"[plane.axis],
                      plane.position);

@@ -20,7 +20,7 @@ struct SliceOptions {
 
 /// @return 0
 /// Errors: throws Error for a file that is no field, for none or several planes, and for a plane
-/// outside the workspace.
+/// outside the workspace or the box.
 int slice(const SliceOptions& options, std::ostream& out, std::ostream& err);
 
 }  // namespace vicinity::cli

@@ -12,6 +12,7 @@
 #include "commands/csv_cell.h"
 #include "drag_words.h"
 #include "fresh_file.h"
+#include "outputs.h"
 #include "picture/chart.h"
 #include "picture/rank_palette.h"
 #include "readable.h"
@@ -109,6 +110,7 @@ int trace(const TraceOptions& options, std::ostream& out, std::ostream&) {
                          .memory = named_memory(options.memory),
                          .direction = direction_from(options.direction),
                          .traversal = traversal_from(options.traversal)};
+  check_outputs({{"-o", options.output}, {"--plot", options.plot}}, {options.field});
   const ViscosityField field = recoded(open_field(options.field), options.coding);
 
   const std::vector<TraceSample> samples = vicinity::trace(field, track, drag);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -85,6 +86,27 @@ void add_device(const ArmOptions& options, Arm& arm) {
   teleoperation.longest_period_s = late_periods / rate;
 }
 
+// Why there is nothing of the arm to feel with.
+[[noreturn]] void refuse_pointless(const Arm& arm, const SceneRobot& placed, bool by_density) {
+  if (by_density && placed.points_per_m2 == 0) {
+    throw Error({.where = placed.urdf.string(),
+                 .what = "nothing of the arm can feel",
+                 .found = "0 body points per m²",
+                 .expected = "a density above zero",
+                 .hint = "--points-per-m2 2000"});
+  }
+  const auto left_out = std::ranges::find_if(
+      arm.remarks, [](const std::string& remark) { return remark.ends_with("left out"); });
+  const std::string found = left_out == arm.remarks.end() ? "" : *left_out;
+  const bool mesh_is_missing = found.find("is not there") != found.npos;
+  throw Error({.where = placed.urdf.string(),
+               .what = "no link has a surface, so that nothing of the arm can feel",
+               .found = found,
+               .hint = mesh_is_missing           ? "--packages FOLDER, where its meshes are"
+                       : !placed.exclude.empty() ? "fewer links in --exclude"
+                                                 : "links with shapes of some area"});
+}
+
 Arm fit_out(RobotLoad load, const SceneRobot& placed, const ArmOptions& options) {
   Arm arm = bodiless_arm(options);
   arm.X_WB = placed.X_WB;
@@ -98,15 +120,21 @@ Arm fit_out(RobotLoad load, const SceneRobot& placed, const ArmOptions& options)
   points.total = options.points;
   points.exclude = placed.exclude;
   arm.points = sample_body_points(arm.robot, points);
-  if (arm.points.count() == 0) {
-    throw Error({.where = placed.urdf.string(),
-                 .what = "no link has a surface, so that nothing of the arm can feel",
-                 .hint = "--packages FOLDER, where its meshes are"});
-  }
+  if (arm.points.count() == 0) refuse_pointless(arm, placed, !options.points);
   return arm;
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> files_of(const ArmOptions& options) {
+  std::vector<std::filesystem::path> files = {options.robot, options.scene};
+  if (options.robot.empty() && !options.scene.empty()) {
+    if (const auto robot = read_scene(options.scene).robot) files.push_back(robot->urdf);
+  }
+  const std::filesystem::path device(options.device);  // or a name: find_device()
+  if (device.extension() == ".yaml" || device.extension() == ".yml") files.push_back(device);
+  return files;
+}
 
 Arm bodiless_arm(const ArmOptions& options) {
   Arm arm;

@@ -45,6 +45,9 @@ struct Arm {
   std::vector<std::string> remarks = {};  ///< oddities, one sentence each
 };
 
+/// The files that the options name: robot, scene and device.
+std::vector<std::filesystem::path> files_of(const ArmOptions& options);
+
 /// Errors: throws Error for a file that cannot be used and for words that fit nothing.
 Arm read_arm(const ArmOptions& options);
 

@@ -10,6 +10,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <string_view>
@@ -89,7 +90,11 @@ class Columns {
 
   [[noreturn]] void refuse(const std::string& quantity, const std::string& what,
                            const std::string& wanted) const {
-    const std::string nearest = nearest_word(wanted, header_);
+    std::vector<std::string> free;
+    std::ranges::copy_if(header_, std::back_inserter(free), [&](const std::string& cell) {
+      return quantity == "t" || !is_time(cell);
+    });
+    const std::string nearest = nearest_word(wanted, free);
     throw Error({.where = where_,
                  .what = what,
                  .found = "columns " + list_of_columns(),
@@ -98,6 +103,13 @@ class Columns {
   }
 
  private:
+  bool is_time(const std::string& cell) const {
+    const std::string name(HeaderName(cell).name);
+    const auto stated = map_.find("t");
+    if (stated == map_.end()) return name == "t" || name == "time";
+    return cell == stated->second.name || name == stated->second.name;
+  }
+
   std::optional<std::size_t> index_of(const std::string& wanted) const {
     std::optional<std::size_t> found;
     for (std::size_t n = 0; n < header_.size(); ++n) {
@@ -191,6 +203,20 @@ Sources sources_of(const Columns& columns, const RobotModel& robot,
   return sources;
 }
 
+// Cells that nobody named; empty ones, as a comma at the end of a line leaves them, do no harm. A
+// decimal comma would be read as two numbers.
+void refuse_cells_too_many(const std::string& where, const CsvTable& table,
+                           const CsvTable::Line& line) {
+  const std::size_t named = table.header().size();
+  std::size_t filled = line.cells.size();
+  while (filled > named && line.cells[filled - 1].empty()) --filled;
+  if (filled <= named) return;
+  throw Error({.where = fmt::format("{}:{}", where, line.number),
+               .what = "the line is too long: a decimal comma?",
+               .found = fmt::format("{} cells where the header has {}", filled, named),
+               .hint = "decimal points, or semicolons between the cells"});
+}
+
 double number_in(const std::string& where, const CsvTable& table, const CsvTable::Line& line,
                  const Source& source) {
   const auto refuse = [&](const std::string& what, const std::string& found) {
@@ -230,6 +256,7 @@ JointLog read_joint_log(const std::filesystem::path& path, const RobotModel& rob
   std::vector<double> q, qd;
   std::vector<std::size_t> lines;
   for (CsvTable::Line line; table.next(line);) {
+    refuse_cells_too_many(where, table, line);
     const double t = number_in(where, table, line, sources.time);
     if (!log.t.empty() && !(t > log.t.back())) {
       throw Error({.where = fmt::format("{}:{}", where, line.number),
@@ -254,7 +281,7 @@ JointLog read_joint_log(const std::filesystem::path& path, const RobotModel& rob
   log.q = Eigen::Map<const Eigen::MatrixXd>(q.data(), count, samples);
   if (!qd.empty()) log.qd = Eigen::Map<const Eigen::MatrixXd>(qd.data(), count, samples);
   unwrap_continuous_joints(robot, log);
-  remark_on_times(lines, log);
+  remark_on_times(lines, sources.time.factor != 1, log);
   remark_on_motion(robot, log);
   return log;
 }

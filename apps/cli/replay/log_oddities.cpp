@@ -55,13 +55,14 @@ void unwrap_continuous_joints(const RobotModel& robot, JointLog& log) {
   }
 }
 
-void remark_on_times(const std::vector<std::size_t>& lines, JointLog& log) {
+void remark_on_times(const std::vector<std::size_t>& lines, bool converted, JointLog& log) {
   const double period = usual_period(log.t);
   if (1 / period < slow_rate) {
     log.remarks.push_back(
-        fmt::format("the log has one sample every {:.4g} s: is its time in milliseconds? Then say "
-                    "t=COLUMN*0.001 in --columns",
-                    period));
+        fmt::format("the log has one sample every {:.4g} s{}", period,
+                    converted ? ", which is seldom; the motion between them is a guess"
+                              : ": is its time in milliseconds? Then say t=COLUMN*0.001 in "
+                                "--columns"));
   }
   std::size_t gaps = 0, longest = 1;
   for (std::size_t n = 1; n < log.t.size(); ++n) {

@@ -17,8 +17,9 @@ namespace vicinity::cli {
 void unwrap_continuous_joints(const RobotModel& robot, JointLog& log);
 
 /// Gaps, and sampling so slow that the time must be in another unit.
-/// @param lines  of the file that the samples stand in, shape (samples,)
-void remark_on_times(const std::vector<std::size_t>& lines, JointLog& log);
+/// @param lines      of the file that the samples stand in, shape (samples,)
+/// @param converted  whether the log or the user named the unit of its times
+void remark_on_times(const std::vector<std::size_t>& lines, bool converted, JointLog& log);
 
 /// Joints beyond their limits, or far faster than they can be.
 void remark_on_motion(const RobotModel& robot, JointLog& log);

@@ -19,7 +19,9 @@ namespace vicinity {
 TriangleMesh read_stl(const std::filesystem::path& path);
 
 /// Writes a binary STL file, beside and renamed into place. Coordinates are rounded to float.
-/// Errors: throws Error where the file cannot be written.
+/// A symbolic link stays one: what it leads to is replaced.
+/// Errors: throws Error where the file cannot be written, and where something that is no regular
+/// file is there.
 void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path);
 
 /// How many triangles of an STL file carry a normal of zero. read_stl() does not mind: it goes by

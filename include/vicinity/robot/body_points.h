@@ -48,6 +48,8 @@ struct BoundingSphere {
 struct BodyPoints {
   static constexpr std::size_t lane = 16;          ///< floats in a cache line
   static constexpr std::size_t cluster_size = 64;  ///< points in every cluster but a link's last
+  /// Ten times what a tick can look at in a millisecond. Spreading so many takes some 20 s.
+  static constexpr std::size_t most = 1'000'000;
 
   using Lane = std::vector<float, CacheLineAllocator<float>>;
   Lane x, y, z;  ///< p_LR, position in the frame of the point's link [m]
@@ -104,7 +106,7 @@ struct BodyPointOptions {
 /// order of triangles.
 ///
 /// Errors: throws Error for a link that the robot does not have, a density, weight or area that is
-/// negative or not finite, more than 100 million points, and an invalid robot.
+/// negative or not finite, more than BodyPoints::most points, and an invalid robot.
 BodyPoints sample_body_points(const RobotModel& robot, const BodyPointOptions& options = {});
 
 }  // namespace vicinity

@@ -34,7 +34,7 @@ struct Device {
 /// Devices whose makers or public toolkits state a damping ceiling, sorted by name.
 std::span<const Device> known_devices();
 
-/// One of known_devices(). Errors: throws Error, with the nearest name, for another.
+/// One of known_devices(). Errors: throws Error, with all of their names, for another.
 const Device& known_device(std::string_view name);
 
 /// A device of one's own, from a YAML file whose keys are the fields of Device:

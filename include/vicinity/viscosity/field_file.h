@@ -11,8 +11,10 @@
 namespace vicinity {
 
 /// Writes a field beside `path` and renames it into place once it is safely on disk: whoever opens
-/// `path` finds the old file or the whole new one.
-/// Errors: throws Error where it cannot be written, and leaves `path` as it was and nothing beside
+/// `path` finds the old file or the whole new one. A symbolic link stays one: what it leads to is
+/// replaced.
+/// Errors: throws Error where it cannot be written, or something that is no regular file is there
+/// (a folder, a device, a pipe), and leaves `path` as it was and nothing beside
 /// it.
 void save_field(const ViscosityField& field, const std::filesystem::path& path);
 

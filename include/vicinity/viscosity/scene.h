@@ -21,7 +21,8 @@
 
 namespace vicinity {
 
-/// A mesh on disk. Mesh files carry no unit, so that one must be stated.
+/// A mesh on disk. Of its unit nothing is read from the file, where it states one either, so that
+/// one must be stated here.
 struct MeshFile {
   std::filesystem::path path;
   std::optional<LengthUnit> units;

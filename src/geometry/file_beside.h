@@ -34,8 +34,15 @@ class Descriptor {
 /// Errors: throws Error with the system's own words.
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what, int error);
 
-/// A new file beside another, removed unless it is moved into place.
-/// Errors: every function throws Error where the disk is full or the folder cannot be written.
+/// The file that a write to `path` makes or replaces: where a symbolic link leads, so that the link
+/// stays one; else `path`.
+/// Errors: throws Error for an empty path, and for a folder, a device, a pipe or anything else that
+/// is there and is no regular file: renaming would take its place.
+std::filesystem::path file_to_write(const std::filesystem::path& path);
+
+/// A new file beside file_to_write(path), removed unless it is moved into its place.
+/// Errors: every function throws Error where the disk is full or the folder cannot be written; the
+/// constructor also as file_to_write().
 class FileBeside {
  public:
   explicit FileBeside(const std::filesystem::path& path);
@@ -51,7 +58,8 @@ class FileBeside {
   const std::string& beside() const noexcept { return beside_; }
 
  private:
-  std::filesystem::path path_;
+  std::filesystem::path path_;   // as errors call it
+  std::filesystem::path place_;  // where it will be
   std::string beside_;
   Descriptor file_;
   bool in_place_ = false;
