@@ -195,7 +195,6 @@ void tend(Source& source, FieldInUse& in_use, dds_entity_t diagnostics, const Sa
       say(std::string(error.what()) + "; the field stays as it is from now on");
       works = false;
     }
-    in_use.hand_over();
     const FieldStanding standing =
         works ? source.standing()
               : FieldStanding{ros2::DiagnosticStatus::error, "it stays as it is: see the output"};
@@ -213,6 +212,7 @@ void tend(Source& source, FieldInUse& in_use, dds_entity_t diagnostics, const Sa
 template <class Source>
 nlohmann::ordered_json summary_of_field(const Source& source) {
   const FieldTraffic& traffic = source.traffic();
+      in_use.hand_over();
   return {{"checksum", hex(source.checksum())}, {"fields", traffic.fields},
           {"chunks", traffic.chunks},           {"bytes", traffic.bytes},
           {"asked_again", traffic.asked_again}, {"refused", traffic.refused}};

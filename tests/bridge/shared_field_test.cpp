@@ -20,6 +20,8 @@
 #include "field_in_use.h"
 #include "field_sharer.h"
 #include "vicinity/robot/body_points.h"
+#include "vicinity/geometry/error.h"
+#include "vicinity/mesh/primitive.h"
 #include "vicinity/robot/urdf_file.h"
 #include "vicinity/viscosity/field_file.h"
 #include "vicinity/viscosity/field_image.h"
@@ -314,6 +316,19 @@ TEST(FieldInUse, GivesEveryAnswerTheNamesOfItsOwnField) {
   in_use.hand_over();
   const Answer third = answer_at(0.004);
   EXPECT_EQ(in_use.objects(third), std::vector<std::string>{"third"});
+TEST(FieldInUse, OneThatCannotBeFeltIsSaidOnceAndGone) {
+  cli::Arm arm;
+  arm.robot = parse_urdf(cli_test::small_arm, "the small arm").robot;
+  arm.points = sample_body_points(arm.robot, {});
+  arm.teleoperation.longest_jump_m = -1;
+  Scene scene;
+  scene.voxel_size = 0.05;
+  scene.objects.push_back({.name = "block", .shape = primitive::box({0.2, 0.1, 0.1})});
+  FieldInUse in_use(arm);
+  EXPECT_THROW(in_use.offer(build_field(scene).field), Error);
+  EXPECT_NO_THROW(in_use.hand_over());
+}
+
   EXPECT_EQ(in_use.objects(first), std::vector<std::string>{"first"});
   EXPECT_FALSE(in_use.field(first)) << "it is kept for ever";
   EXPECT_TRUE(in_use.field(third));

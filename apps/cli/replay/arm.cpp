@@ -103,6 +103,7 @@ Arm fit_out(RobotLoad load, const SceneRobot& placed, const ArmOptions& options)
                  .what = "no link has a surface, so that nothing of the arm can feel",
                  .hint = "--packages FOLDER, where its meshes are"});
   }
+  check_fit(arm.robot, arm.teleoperation);
   return arm;
 }
 

@@ -45,7 +45,8 @@ struct Arm {
   std::vector<std::string> remarks = {};  ///< oddities, one sentence each
 };
 
-/// Errors: throws Error for a file that cannot be used and for words that fit nothing.
+/// Errors: throws Error for a file that cannot be used, for words that fit nothing, and for a
+/// device that is for another arm.
 Arm read_arm(const ArmOptions& options);
 
 /// How an arm feels and how often it ticks, for whoever has a robot of his own: without robot,
