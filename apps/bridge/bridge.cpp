@@ -24,6 +24,7 @@
 #include "recorder.h"
 #include "replay/felt_messages.h"
 #include "ros2/topics.h"
+#include "replay/real_time.h"
 #include "surroundings.h"
 #include "vicinity/geometry/error.h"
 #include "watched_input.h"
@@ -93,7 +94,7 @@ dds::ParticipantOptions participant_options(const BridgeOptions& options) {
 
 // What came in.
 struct Received {
-  std::uint64_t joint_states = 0, transforms = 0, bad_transforms = 0, no_room = 0;
+  std::uint64_t joint_states = 0, of_others = 0, transforms = 0, bad_transforms = 0, no_room = 0;
 };
 
 std::int64_t since_1970_ns() {
@@ -132,7 +133,13 @@ Received receive(const Readers& readers, Intake& intake, ArmLoop& loop, const st
     }
     while (dds::take(readers.states, bytes)) {
       ++received.joint_states;
-      if (!loop.give(intake.joint_state(bytes, since_1970_ns()))) ++received.no_room;
+      const auto sample = intake.joint_state(
+          bytes, {.since_1970_ns = since_1970_ns(), .monotonic_ns = cli::monotonic_ns()});
+      if (!sample) {
+        ++received.of_others;
+      } else if (!loop.give(*sample)) {
+        ++received.no_room;
+      }
     }
   }
   return received;
@@ -236,6 +243,7 @@ std::string in_words(const nlohmann::ordered_json& json) {
     statuses +=
         fmt::format("{}{} {}", statuses.empty() ? "" : ", ", count.get<std::uint64_t>(), status);
   }
+                              {"of_others", received.of_others},
   return fmt::format("heard     {} joint states and {} transforms\nanswered  {}\n",
                      json["joint_states"].get<std::uint64_t>(),
                      json["transforms"].get<std::uint64_t>(),
