@@ -82,6 +82,17 @@ dds::ParticipantOptions participant_options(const BridgeOptions& options) {
                  .expected = "N·s/m, more than zero"});
   }
   std::string configuration;
+  if (options.seconds && !(*options.seconds > 0 && std::isfinite(*options.seconds))) {
+    throw Error({.where = "--seconds",
+                 .what = "is no time to end after",
+                 .found = fmt::format("{:g}", *options.seconds),
+                 .expected = "seconds, more than zero"});
+  }
+  if (!options.recording.empty() && options.recording.extension() != ".mcap") {
+    throw Error({.where = options.recording.string(),
+                 .what = "a recording of the bridge is MCAP, whatever it is called",
+                 .hint = "a name that ends in .mcap"});
+  }
   if (!options.dds.empty()) {
     if (!std::filesystem::exists(options.dds)) {
       throw Error({.where = options.dds.string(), .what = "there is no such file"});
@@ -291,6 +302,10 @@ int bridge(const BridgeOptions& options, std::ostream& out, std::ostream& err) {
   }
   const Readers readers(participant);
   const dds_entity_t markers = participant.writer<ros2::MarkerArray>(ros2::topic::markers);
+    if (const auto kept = keep_earlier(options.recording); !kept.empty()) {
+      err << "note: the earlier " << options.recording.string() << " is now " << kept.string()
+          << '\n';
+    }
   const dds_entity_t layers =
       participant.writer<ros2::PointCloud2>(ros2::topic::layers, {.depth = 1});
   const dds_entity_t diagnostics =
