@@ -291,7 +291,8 @@ TEST_F(Wire, SurvivesAnyBytes) {
       bytes[static_cast<std::size_t>(place)] = static_cast<std::byte>(test::whole(random, 0, 255));
     }
     const auto sample = heard(bytes, start_ns + along * ms);
-    if (sample) EXPECT_TRUE(answer_to(*sample).output.torque.allFinite());
+    if (!sample) return;  // none of our joints is named any more
+    EXPECT_TRUE(answer_to(*sample).output.torque.allFinite());
   });
 }
 
