@@ -53,6 +53,9 @@ TEST(Endpoints, CarryTheTypeHashAndTheNamesOfRos2) {
   ASSERT_TRUE(ros2::read_cdr(bytes, heard));
   EXPECT_EQ(heard.position, said.position);
 
+  EXPECT_TRUE(dds::is_heard(writer));
+  EXPECT_FALSE(dds::is_heard(ours.writer<ros2::JointState>(ros2::topic::joint_efforts)));
+
   dds_instance_handle_t match = 0;
   ASSERT_EQ(dds_get_matched_publications(reader, &match, 1), 1);
   dds_builtintopic_endpoint_t* sender = dds_get_matched_publication_data(reader, match);
