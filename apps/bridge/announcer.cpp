@@ -15,6 +15,12 @@ namespace {
 constexpr double standing_still = 1e-3;
 // Monitors take a source that is silent for some seconds for dead.
 constexpr std::int64_t say_again_ns = 1'000'000'000;
+constexpr auto longest_blind_ns = static_cast<std::int64_t>(1e9 * ArmLoop::longest_silence_s);
+
+// A tick with its force: what is said of the arm is known.
+bool is_felt(const Answer& answer) noexcept {
+  return answer.sample.heard == Heard::state && answer.output.status <= Status::outside_field;
+}
 
 }  // namespace
 
@@ -57,16 +63,16 @@ void Announcer::announce(const Answer& answer) {
   const Output& output = answer.output;
   const char* status = status_of(answer);
   ++statuses_[status];
-  const bool felt =
-      sample.heard == Heard::state && output.torque.allFinite() && sample.q.allFinite();
   if (named_.is_new(answer)) {
     messages_.name_objects(field_.objects(answer));
     said_.clear();
   }
-  if (felt) find_scale(answer);
-  if (sample.heard == Heard::silence || sample.heard == Heard::nothing_yet ||
-      sample.heard == Heard::no_field) {
-    scale_ = 0;
+  const std::int64_t now_ns = cli::monotonic_ns();
+  find_scale(answer);
+  if (is_felt(answer)) {
+    felt_ns_ = now_ns;
+  } else if (now_ns - felt_ns_ > longest_blind_ns || sample.heard == Heard::silence) {
+    scale_ = 0;  // whatever comes in place of what could be felt, nothing is known of the arm
   }
   const std::span<const double> q(last_q_.data(), static_cast<std::size_t>(last_q_.size()));
   const std::span<const double> torque(output.torque.data(),
@@ -75,7 +81,6 @@ void Announcer::announce(const Answer& answer) {
   put(efforts_, messages_.joint_efforts(sample.stamp, torque));
   put(force_, ros2::Float64{output.master_force});
   put(scale_topic_, ros2::Float64{scale_});
-  const std::int64_t now_ns = cli::monotonic_ns();
   const Reason& reason = output.reason;
   const bool unchanged = said_ == status && said_reason_.link == reason.link &&
                          said_reason_.object == reason.object && said_reason_.rank == reason.rank;
@@ -89,6 +94,7 @@ void Announcer::announce(const Answer& answer) {
 // The drag that the tool met: the power it lost, by the square of its speed.
 void Announcer::find_scale(const Answer& answer) {
   const ArmSample& sample = answer.sample;
+  if (sample.heard != Heard::state || !sample.q.allFinite()) return;
   AxisVector qd = sample.qd;
   const double period_s = sample.time_s - last_time_s_;
   if (!sample.has_velocities) {
@@ -97,11 +103,11 @@ void Announcer::find_scale(const Answer& answer) {
   }
   last_q_ = sample.q;
   last_time_s_ = sample.time_s;
-  if (answer.output.status > Status::outside_field) return;  // without force: what was said stands
+  if (!is_felt(answer)) return;  // for a while, what was said stands
   kinematics_.update(last_q_.data(), qd.data(), sample.X_WB);
   const double speed = kinematics_.v_WLo(messages_.tool_link()).norm();
   if (!std::isfinite(speed) || speed < standing_still) {
-    if (answer.output.status == Status::started) scale_ = 1;
+    if (scale_ == 0) scale_ = 1;  // heard for the first time, or again
     return;
   }
   scale_ = speed_scale(answer.output.power / (speed * speed), half_speed_drag_);

@@ -33,6 +33,8 @@ class Announcer {
 
   /// Answers so far, by status.
   const std::map<std::string, std::uint64_t>& statuses() const noexcept { return statuses_; }
+  /// The last that was said.
+  double scale() const noexcept { return scale_; }
   /// Messages that DDS did not take.
   std::uint64_t refused() const noexcept { return refused_; }
 
@@ -52,6 +54,7 @@ class Announcer {
   dds::Sample bytes_;
   AxisVector last_q_;
   double last_time_s_ = 0, scale_ = 0;
+  std::int64_t felt_ns_ = 0;  // the last answer that was felt
   // Of the last diagnostics.
   std::string said_;
   Reason said_reason_;

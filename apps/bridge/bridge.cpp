@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -23,6 +24,7 @@
 #include "progress_bar.h"
 #include "recorder.h"
 #include "replay/felt_messages.h"
+#include "replay/real_time.h"
 #include "ros2/topics.h"
 #include "surroundings.h"
 #include "vicinity/geometry/error.h"
@@ -74,11 +76,22 @@ dds::ParticipantOptions participant_options(const BridgeOptions& options) {
                  .what = "is a scene, and no place for the copy of a field",
                  .hint = "a name that ends in .vicinity; it need not be there yet"});
   }
-  if (!(options.half_speed_drag > 0)) {
+  if (!(options.half_speed_drag > 0 && std::isfinite(options.half_speed_drag))) {
     throw Error({.where = "--half-speed-drag",
                  .what = "is no drag that slows anything",
                  .found = fmt::format("{:g}", options.half_speed_drag),
                  .expected = "N·s/m, more than zero"});
+  }
+  if (options.seconds && !(*options.seconds > 0 && std::isfinite(*options.seconds))) {
+    throw Error({.where = "--seconds",
+                 .what = "is no time to end after",
+                 .found = fmt::format("{:g}", *options.seconds),
+                 .expected = "seconds, more than zero"});
+  }
+  if (!options.recording.empty() && options.recording.extension() != ".mcap") {
+    throw Error({.where = options.recording.string(),
+                 .what = "a recording of the bridge is MCAP, whatever it is called",
+                 .hint = "a name that ends in .mcap"});
   }
   std::string configuration;
   if (!options.dds.empty()) {
@@ -93,7 +106,7 @@ dds::ParticipantOptions participant_options(const BridgeOptions& options) {
 
 // What came in.
 struct Received {
-  std::uint64_t joint_states = 0, transforms = 0, bad_transforms = 0, no_room = 0;
+  std::uint64_t joint_states = 0, of_others = 0, transforms = 0, bad_transforms = 0, no_room = 0;
 };
 
 std::int64_t since_1970_ns() {
@@ -132,7 +145,13 @@ Received receive(const Readers& readers, Intake& intake, ArmLoop& loop, const st
     }
     while (dds::take(readers.states, bytes)) {
       ++received.joint_states;
-      if (!loop.give(intake.joint_state(bytes, since_1970_ns()))) ++received.no_room;
+      const auto sample = intake.joint_state(
+          bytes, {.since_1970_ns = since_1970_ns(), .monotonic_ns = cli::monotonic_ns()});
+      if (!sample) {
+        ++received.of_others;
+      } else if (!loop.give(*sample)) {
+        ++received.no_room;
+      }
     }
   }
   return received;
@@ -167,8 +186,11 @@ void draw(dds_entity_t markers, dds_entity_t layers, Surroundings& surroundings,
     if (drawn.is_new(answer)) {
       if (auto field = in_use.field(answer)) surroundings.look_at(std::move(*field));
     }
-    (void)dds::send(markers, surroundings.markers(answer), bytes);
-    if (n % layers_every == 0) (void)dds::send(layers, surroundings.layers(answer), bytes);
+    if (dds::is_heard(markers)) (void)dds::send(markers, surroundings.markers(answer), bytes);
+    // Every voxel around the arm is looked at for them.
+    if (n % layers_every == 0 && dds::is_heard(layers)) {
+      (void)dds::send(layers, surroundings.layers(answer), bytes);
+    }
     std::this_thread::sleep_for(period);
   }
 }
@@ -191,11 +213,11 @@ void tend(Source& source, FieldInUse& in_use, dds_entity_t diagnostics, const Sa
       } else {
         std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
       }
+      in_use.hand_over();
     } catch (const std::exception& error) {
       say(std::string(error.what()) + "; the field stays as it is from now on");
       works = false;
     }
-    in_use.hand_over();
     const FieldStanding standing =
         works ? source.standing()
               : FieldStanding{ros2::DiagnosticStatus::error, "it stays as it is: see the output"};
@@ -221,6 +243,7 @@ nlohmann::ordered_json summary_of_field(const Source& source) {
 nlohmann::ordered_json summary(const Received& received, const Announcer& announcer,
                                const Answer& last) {
   nlohmann::ordered_json json{{"joint_states", received.joint_states},
+                              {"of_others", received.of_others},
                               {"transforms", received.transforms},
                               {"bad_transforms", received.bad_transforms},
                               {"no_room", received.no_room}};
@@ -257,7 +280,7 @@ int bridge(const BridgeOptions& options, std::ostream& out, std::ostream& err) {
   const cli::Arm arm = cli::read_arm(arm_options);
   for (const std::string& remark : arm.remarks) err << "note: " << remark << '\n';
   const int tool = arm.teleoperation.tool_link;
-  const cli::WhileWriting to_the_end;  // a signal asks the bridge to end
+  const cli::UntilAsked to_the_end;  // a signal is how it ends
   const Say say = [&](const std::string& sentence) {
     std::osyncstream(err) << sentence << '\n' << std::flush;
   };
@@ -279,6 +302,10 @@ int bridge(const BridgeOptions& options, std::ostream& out, std::ostream& err) {
   Surroundings surroundings(arm.robot, arm.points, tool, options.world);
   std::unique_ptr<Recorder> recorder;
   if (!options.recording.empty()) {
+    if (const auto kept = keep_earlier(options.recording); !kept.empty()) {
+      err << "note: the earlier " << options.recording.string() << " is now " << kept.string()
+          << '\n';
+    }
     recorder = std::make_unique<Recorder>(options.recording, *in_use, arm.robot, tool);
   }
   const Readers readers(participant);

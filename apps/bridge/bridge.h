@@ -24,7 +24,7 @@ struct BridgeOptions {
   std::string share_field;          ///< under this name, "/cell"; empty: it is not shared
   std::string follow_field;         ///< the one that is shared under this name
   double half_speed_drag = 1;       ///< of the tool: it halves the speed scale [N·s/m]
-  std::filesystem::path recording;  ///< .mcap; empty: none
+  std::filesystem::path recording;  ///< .mcap; empty: none; an earlier one is kept
   std::optional<double> seconds;    ///< end by itself
   bool json = false;                ///< the summary, for programs
 };

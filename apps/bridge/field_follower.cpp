@@ -61,13 +61,17 @@ class AtHand {
 
 MappedFile::MappedFile(const std::filesystem::path& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  map(file);
+  close(file);
+}
+
+void MappedFile::map(int file) {
   struct stat status {};
-  if (file >= 0 && fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0) {
-    const auto size = static_cast<std::size_t>(status.st_size);
-    void* const mapping = mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0);
-    if (mapping != MAP_FAILED) bytes_ = {static_cast<const std::byte*>(mapping), size};
-  }
-  if (file >= 0) close(file);
+  if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode) || status.st_size <= 0) return;
+  const auto size = static_cast<std::size_t>(status.st_size);
+  void* const mapping = mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0);
+  if (mapping != MAP_FAILED) bytes_ = {static_cast<const std::byte*>(mapping), size};
 }
 
 MappedFile::~MappedFile() {
@@ -226,14 +230,22 @@ void FieldFollower::ask() {
 }
 
 std::optional<ViscosityField> FieldFollower::finish() {
+  if (fsync(file_) != 0) {
+    fetching_ = false;
+    fail(part_, "cannot be written");
+  }
+  // Mapped through the descriptor that is open: it takes no other.
+  const auto part = std::make_shared<const MappedFile>(file_);
+  const std::span<const std::byte> bytes = part->bytes();
+  if (bytes.empty()) return {};  // for want of memory, say: again at the next step
   fetching_ = false;
-  if (fsync(file_) != 0) fail(part_, "cannot be written");
   close(std::exchange(file_, -1));
   try {
-    ViscosityField field = open_field(part_);
-    if (checksum_of(field.image()) != manifest_.checksum) {
+    if (checksum_of(bytes) != manifest_.checksum) {
       throw Error({.where = part_.string(), .what = "is not the field that was announced"});
     }
+    ViscosityField field = ViscosityField::from_image(
+        std::shared_ptr<const std::byte[]>(part, bytes.data()), bytes.size(), part_.string());
     std::filesystem::rename(part_, copy_);
     const int folder = open(std::filesystem::absolute(copy_).parent_path().c_str(),
                             O_RDONLY | O_DIRECTORY | O_CLOEXEC);

@@ -23,16 +23,19 @@
 
 namespace vicinity::bridge {
 
-/// A file's bytes, mapped; empty where there is no such file.
+/// A file's bytes, mapped; empty where there is no such file, or no room for it.
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& path);
+  explicit MappedFile(int file) { map(file); }
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
   std::span<const std::byte> bytes() const noexcept { return bytes_; }
 
  private:
+  void map(int file);
+
   std::span<const std::byte> bytes_;
 };
 

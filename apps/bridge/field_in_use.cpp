@@ -19,17 +19,25 @@ void FieldInUse::offer(ViscosityField field) {
 
 void FieldInUse::hand_over() {
   if (!waiting_) return;
-  if (teleoperation_ == nullptr) {
-    note(*waiting_);
-    teleoperation_ =
-        std::make_unique<Teleoperation>(arm_.robot, arm_.points, *waiting_, arm_.teleoperation);
+  const bool first = teleoperation_ == nullptr;
+  if (!first && loop_.fields_taken() + 1 != given_.size()) return;
+  // Gone from here whatever happens: one that fails is not tried for ever.
+  const ViscosityField field = *std::exchange(waiting_, std::nullopt);
+  if (first) {
+    auto made = std::make_unique<Teleoperation>(arm_.robot, arm_.points, field, arm_.teleoperation);
+    note(field);
+    teleoperation_ = std::move(made);
     loop_.feel(*teleoperation_);
-  } else {
-    if (loop_.fields_taken() + 1 != given_.size()) return;
-    note(*waiting_);
-    teleoperation_->swap_field(*waiting_);
+    return;
   }
-  waiting_.reset();
+  note(field);  // before the tick can answer from it
+  try {
+    teleoperation_->swap_field(field);
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    given_.pop_back();
+    throw;
+  }
 }
 
 void FieldInUse::note(const ViscosityField& field) {

@@ -26,9 +26,12 @@ class FieldInUse {
   ArmLoop& loop() noexcept { return loop_; }
 
   /// The field that is to be felt from now on. For one thread, the same as hand_over().
+  /// Errors: as hand_over().
   void offer(ViscosityField field);
   /// Hands the newest to the tick, once it has taken the one before: so that every answer can say
   /// which field it is about. To be called now and then.
+  /// Errors: throws what Teleoperation throws; the field before it is felt on, and this one is no
+  /// more.
   void hand_over();
 
   /// Of the field that a state was answered from; empty where there was none. From any thread.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "replay/arm.h"
 #include "replay/felt_messages.h"
@@ -15,6 +16,9 @@ namespace {
 
 // Two clocks drift apart by less than a millisecond in so long.
 constexpr std::int64_t window_ns = 5'000'000'000;
+constexpr auto latest_ns = static_cast<std::int64_t>(1e9 * Intake::latest_s);
+
+bool is_nan(double number) { return std::isnan(number); }
 
 }  // namespace
 
@@ -45,22 +49,25 @@ Intake::Intake(const RobotModel& robot, const Pose& X_WB)
   }
 }
 
-ArmSample Intake::joint_state(std::span<const std::byte> bytes, std::int64_t arrived_ns) {
+std::optional<ArmSample> Intake::joint_state(std::span<const std::byte> bytes,
+                                             const Arrival& arrived) {
   ArmSample sample;
   sample.X_WB = X_WB_;
-  sample.stamp = cli::stamp_of(static_cast<std::uint64_t>(arrived_ns));
+  sample.stamp = cli::stamp_of(static_cast<std::uint64_t>(arrived.since_1970_ns));
   sample.heard = Heard::malformed;
   if (!ros2::read_cdr(bytes, state_)) return sample;
+  find_joints();
+  if (places_.empty() && started_) return {};
   if (state_.position.size() != state_.name.size() || state_.header.stamp.sec < 0) return sample;
-  std::int64_t sent_ns = arrived_ns;
+  std::int64_t sent_ns = arrived.since_1970_ns;
   if (const std::uint64_t stamp_ns = cli::nanoseconds_of(state_.header.stamp); stamp_ns > 0) {
     sent_ns = static_cast<std::int64_t>(stamp_ns);
     sample.stamp = state_.header.stamp;
   }
   sample.heard = Heard::another_robot;
-  if (!find_joints()) return sample;
+  if (places_.size() != joints_.size()) return sample;
   sample.heard = Heard::late;
-  if (is_late(sent_ns, arrived_ns)) return sample;
+  if (is_late(sent_ns, arrived.monotonic_ns)) return sample;
   sample.heard = Heard::state;
   if (!started_) first_ns_ = sent_ns;
   started_ = true;
@@ -73,6 +80,8 @@ ArmSample Intake::joint_state(std::span<const std::byte> bytes, std::int64_t arr
     sample.q[n] = state_.position[places_[c]];
     if (sample.has_velocities) sample.qd[n] = state_.velocity[places_[c]];
   }
+  // So says ROS 2's broadcaster that the hardware measures none.
+  if (std::any_of(sample.qd.begin(), sample.qd.end(), is_nan)) sample.has_velocities = false;
   return sample;
 }
 
@@ -94,29 +103,31 @@ bool Intake::transforms(std::span<const std::byte> bytes, const std::string& wor
 
 bool Intake::is_late(std::int64_t sent_ns, std::int64_t arrived_ns) {
   const std::int64_t under_way = arrived_ns - sent_ns;
-  if (!started_ || arrived_ns - window_begin_ns_ > window_ns) {
-    quickest_before_ns_ = started_ ? quickest_ns_ : under_way;
-    quickest_ns_ = under_way;
+  // A sender's clock that was set back, or one stamp before this that was far ahead: what was
+  // measured by it says nothing. The tick sees that time ran backwards.
+  if (!started_ || sent_ns < last_ns_ - latest_ns) {
+    quickest_ = quickest_before_ = {};
+    window_begin_ns_ = arrived_ns;
+  } else if (arrived_ns - window_begin_ns_ > window_ns) {
+    quickest_before_ = std::exchange(quickest_, {});
     window_begin_ns_ = arrived_ns;
   }
-  quickest_ns_ = std::min(quickest_ns_, under_way);
-  const std::int64_t quickest = std::min(quickest_ns_, quickest_before_ns_);
-  return under_way - quickest > static_cast<std::int64_t>(1e9 * latest_s);
+  last_ns_ = sent_ns;
+  quickest_.second = std::min(quickest_.second, std::max(quickest_.first, under_way));
+  quickest_.first = std::min(quickest_.first, under_way);
+  const std::int64_t quickest = std::min(quickest_.second, quickest_before_.second);
+  return quickest != Quickest::none && under_way - quickest > latest_ns;
 }
 
-bool Intake::find_joints() {
-  if (state_.name == names_ && !names_.empty()) return !places_.empty();
+void Intake::find_joints() {
+  if (state_.name == names_) return;
   names_ = state_.name;
   places_.clear();
   for (const std::string& joint : joints_) {
     const auto found = std::ranges::find(names_, joint);
-    if (found == names_.end()) {
-      places_.clear();
-      return false;
-    }
+    if (found == names_.end()) continue;
     places_.push_back(static_cast<std::size_t>(found - names_.begin()));
   }
-  return true;
 }
 
 }  // namespace vicinity::bridge

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,7 +27,7 @@ enum class Heard : std::uint8_t {
   nothing_yet,    ///< no joint state has come since the start
   silence,        ///< none for longer than the loop allows
   late,           ///< it was under way for much longer than the quickest
-  another_robot,  ///< a joint of ours is not named in it
+  another_robot,  ///< a joint of ours is not named in it, others are; or none, and nobody named any
   malformed,      ///< no joint state, or lists that do not fit together
 };
 
@@ -41,6 +43,12 @@ struct ArmSample {
   Pose X_WB = Pose::Identity();
 };
 
+/// When a message came.
+struct Arrival {
+  std::int64_t since_1970_ns = 0;
+  std::int64_t monotonic_ns = 0;  ///< by a clock that nobody sets
+};
+
 /// For one thread. Not real-time.
 class Intake {
  public:
@@ -50,28 +58,35 @@ class Intake {
 
   Intake(const RobotModel& robot, const Pose& X_WB);
 
-  /// @param bytes       a sensor_msgs/msg/JointState in CDR
-  /// @param arrived_ns  by a clock of ours, since 1970
-  ArmSample joint_state(std::span<const std::byte> bytes, std::int64_t arrived_ns);
+  /// @param bytes  a sensor_msgs/msg/JointState in CDR
+  /// @return nothing where it names no joint of ours, and others have: it is another device's, on
+  ///         the same topic
+  std::optional<ArmSample> joint_state(std::span<const std::byte> bytes, const Arrival& arrived);
 
   /// Takes the transform from `world` to the robot's base link, where the message holds it; false
   /// where it holds one that is none (not finite, no rotation) or cannot be read.
   bool transforms(std::span<const std::byte> bytes, const std::string& world);
 
  private:
+  // The two quickest ways of some seconds. The second counts: a single stamp may be wrong.
+  struct Quickest {
+    static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
+    std::int64_t first = none, second = none;
+  };
+
   bool is_late(std::int64_t sent_ns, std::int64_t arrived_ns);
-  bool find_joints();
+  void find_joints();
 
   std::vector<std::string> joints_;
   std::string base_link_;
   Pose X_WB_;
   ros2::JointState state_;
   std::vector<std::string> names_;   // of the last message
-  std::vector<std::size_t> places_;  // of our joints in it; empty: another robot
+  std::vector<std::size_t> places_;  // of our joints in it, as far as they are
   bool started_ = false;
-  std::int64_t first_ns_ = 0;
-  // The quickest way of this window of some seconds, and of the one before.
-  std::int64_t window_begin_ns_ = 0, quickest_ns_ = 0, quickest_before_ns_ = 0;
+  std::int64_t first_ns_ = 0, last_ns_ = 0;  // stamps
+  std::int64_t window_begin_ns_ = 0;
+  Quickest quickest_, quickest_before_;  // of this window, and of the one before
 };
 
 }  // namespace vicinity::bridge

@@ -46,9 +46,9 @@ int run(int argc, char** argv) {
   app.add_option("--half-speed-drag", options.half_speed_drag,
                  "drag of the tool that halves the speed scale [N·s/m]")
       ->capture_default_str();
-  app.add_option("--record", options.recording, "what was felt, while it is: .mcap");
-  app.add_option("--seconds", options.seconds, "end after so long; default: Ctrl-C")
-      ->check(CLI::PositiveNumber);
+  app.add_option("--record", options.recording,
+                 "what was felt, while it is: .mcap; one that is there becomes felt.1.mcap");
+  app.add_option("--seconds", options.seconds, "end after so long; default: Ctrl-C");
   app.add_flag("--json", options.json, "the summary, for programs");
   return cli::run_words(app, argc, argv, [&] { return bridge(options, std::cout, std::cerr); });
 }

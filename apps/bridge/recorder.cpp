@@ -17,7 +17,7 @@ namespace vicinity::bridge {
 namespace {
 
 int opened(const std::filesystem::path& path) {
-  const int file = open(path.c_str(), O_CREAT | O_WRONLY | O_TRUNC | O_CLOEXEC, 0666);
+  const int file = open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
   if (file >= 0) {
     // The file's name must outlast a power failure too.
     const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
@@ -34,6 +34,22 @@ int opened(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+std::filesystem::path keep_earlier(const std::filesystem::path& recording) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(recording, none)) return {};
+  std::filesystem::path kept;
+  int n = 0;
+  do {
+    kept = recording;
+    kept.replace_extension("." + std::to_string(++n) + recording.extension().string());
+  } while (std::filesystem::exists(kept));
+  std::filesystem::rename(recording, kept, none);
+  if (!none) return kept;
+  throw Error({.where = recording.string(),
+               .what = "an earlier recording cannot be kept as " + kept.string(),
+               .found = none.message()});
+}
 
 Recorder::Recorder(const std::filesystem::path& path, const FieldInUse& field,
                    const RobotModel& robot, int tool_link)
@@ -82,12 +98,7 @@ void Recorder::run() {
       }
       for (const Answer& answer : now) {
         if (named_.is_new(answer)) recording_.name_objects(field_.objects(answer));
-        const ArmSample& sample = answer.sample;
-        const auto n = static_cast<std::size_t>(sample.q.size());
-        recording_.add(cli::nanoseconds_of(sample.stamp), {sample.q.data(), n},
-                       {answer.output.torque.data(), n}, answer.output.tool,
-                       answer.output.master_force, answer.output.reason, sample.X_WB,
-                       status_of(answer), level_of(answer));
+        record(answer);
       }
       if (std::chrono::steady_clock::now() - closed < longest_chunk) continue;
       recording_.file().close_chunk();
@@ -99,6 +110,20 @@ void Recorder::run() {
     failure_ = error.what();
     waiting_.clear();
   }
+}
+
+void Recorder::record(const Answer& answer) {
+  const ArmSample& sample = answer.sample;
+  const Output& output = answer.output;
+  const std::uint64_t time_ns = cli::nanoseconds_of(sample.stamp);
+  if (!sample.q.allFinite()) {  // no place, and no axes that a wrench could be in
+    recording_.say(time_ns, output.reason, status_of(answer), level_of(answer));
+    return;
+  }
+  const auto n = static_cast<std::size_t>(sample.q.size());
+  recording_.add(time_ns, {sample.q.data(), n}, {output.torque.data(), n}, output.tool,
+                 output.master_force, output.reason, sample.X_WB, status_of(answer),
+                 level_of(answer));
 }
 
 void Recorder::write(std::string_view bytes) {

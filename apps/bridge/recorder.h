@@ -18,10 +18,15 @@
 
 namespace vicinity::bridge {
 
+/// Gives an earlier recording of this name another, so that whoever is started again with the same
+/// words loses nothing: felt.mcap becomes felt.1.mcap, or the first number that is free. Returns
+/// it; empty: there was none. Errors: throws Error where the folder does not let it.
+std::filesystem::path keep_earlier(const std::filesystem::path& recording);
+
 /// Writes in a thread of its own: a disk may take its time.
 class Recorder {
  public:
-  /// Errors: throws Error where the file cannot be written.
+  /// Errors: throws Error where the file is there already, or cannot be written.
   Recorder(const std::filesystem::path& path, const FieldInUse& field, const RobotModel& robot,
            int tool_link);
   /// Ends the file with its summary.
@@ -29,7 +34,7 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Only states that were ticked are recorded.
+  /// Only states that were ticked are recorded; of one whose positions are not finite, its status.
   void add(const Answer& answer);
   /// Why it gave up; empty: it did not.
   std::string failure() const;
@@ -39,6 +44,7 @@ class Recorder {
   static constexpr std::chrono::seconds longest_chunk{1};
 
   void run();
+  void record(const Answer& answer);
   void write(std::string_view bytes);
 
   std::filesystem::path path_;

@@ -25,7 +25,7 @@ class WatchedInput {
 
   const std::filesystem::path& path() const noexcept { return input_; }
 
-  /// Builds the scene, again only what changed, or opens the field.
+  /// Builds the scene, again only what changed, or reads the field into memory.
   /// Errors: throws Error for one that cannot be used; it is not changed() until it is written
   /// anew.
   ViscosityField field(const BuildOptions& options = {});

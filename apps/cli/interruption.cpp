@@ -42,6 +42,13 @@ WhileWriting::~WhileWriting() {
   if (--writers == 0 && asked != 0) _exit(exit_code);
 }
 
+UntilAsked::UntilAsked() noexcept { ++writers; }
+
+UntilAsked::~UntilAsked() {
+  --writers;
+  asked = 0;
+}
+
 bool interruption_asked() noexcept { return asked != 0; }
 
 void stop_if_interrupted() {

@@ -28,7 +28,17 @@ class WhileWriting {
   WhileWriting& operator=(const WhileWriting&) = delete;
 };
 
-/// Whether a signal has asked while something was being written.
+/// The same for a program that serves until it is told to: then it has done what it should, and
+/// goes on to its end. Not within a WhileWriting.
+class UntilAsked {
+ public:
+  UntilAsked() noexcept;
+  ~UntilAsked();
+  UntilAsked(const UntilAsked&) = delete;
+  UntilAsked& operator=(const UntilAsked&) = delete;
+};
+
+/// Whether a signal has asked while one of these lived.
 bool interruption_asked() noexcept;
 
 /// For long writes: throws Interrupted if a signal has asked.

@@ -118,7 +118,13 @@ void add_objects(py::module_& module) {
            "scale"_a = usual.scale, "m"_a = usual.m, "q"_a = usual.q, "layers"_a = usual.layers,
            "boundary"_a = usual.boundary, "inner"_a = usual.inner, "coding"_a = usual.coding)
       .def_readwrite(VICINITY_PLAIN_MEMBER(SceneObject, name))
-      .def_readwrite(VICINITY_PLAIN_MEMBER(SceneObject, shape))
+      // A copy: what one alternative is made of goes when another takes its place.
+      .def_property(
+          "shape", [](const SceneObject& object) { return object.shape; },
+          [](SceneObject& object, std::variant<MeshFile, TriangleMesh> shape) {
+            object.shape = std::move(shape);
+          },
+          "A copy: assigned anew where it is to change.")
       .def_readwrite(VICINITY_PLAIN_MEMBER(SceneObject, X_WO))
       .def_readwrite(VICINITY_PLAIN_MEMBER(SceneObject, scale))
       .def_readwrite(VICINITY_MEMBER(SceneObject, m))

@@ -95,6 +95,8 @@ void Participant::Waiter::wait(double seconds) const {
   dds_waitset_wait(waitset_, nullptr, 0, static_cast<dds_duration_t>(1e9 * seconds));
 }
 
+bool is_heard(dds_entity_t writer) { return dds_get_matched_subscriptions(writer, nullptr, 0) > 0; }
+
 bool take(dds_entity_t reader, Sample& bytes) {
   void* samples[1] = {&bytes};
   dds_sample_info_t info;

@@ -80,6 +80,9 @@ bool send(dds_entity_t writer, const Message& message, Sample& bytes) {
   return dds_write(writer, &bytes) == DDS_RETCODE_OK;
 }
 
+/// Whether anybody listens to a writer.
+bool is_heard(dds_entity_t writer);
+
 /// Takes the oldest sample that has not been taken; false where there is none.
 bool take(dds_entity_t reader, Sample& bytes);
 

@@ -3,12 +3,14 @@
 
 #include "vdb/vdb_file.h"
 
-#include <openvdb/io/File.h>
+#include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
 
+#include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
 
 #include "geometry/file_beside.h"
@@ -35,6 +37,18 @@ constexpr std::int32_t planes_between_prunings = 128;
 float background(VoxelQuantity quantity) {
   return size_of(quantity) == 2 || quantity == VoxelQuantity::distance ? -1.0f : 0.0f;
 }
+
+// As openvdb::io::File, which does not ask whether the disk took what was written.
+class SeekableArchive : public openvdb::io::Archive {
+ public:
+  void write_file(const std::string& path, const openvdb::GridPtrVec& grids) const {
+    std::ofstream out;
+    out.exceptions(std::ios::failbit | std::ios::badbit);
+    out.open(path, std::ios::binary);
+    Archive::write(out, grids, /*seekable=*/true);
+    out.close();
+  }
+};
 
 }  // namespace
 
@@ -74,11 +88,11 @@ void write_vdb(const ViscosityField& field, const VoxelBox& box,
     grids.push_back(volume);
   }
   try {
-    openvdb::io::File out(file.beside());
-    out.write(grids);
-    out.close();
+    SeekableArchive().write_file(file.beside(), grids);
   } catch (const openvdb::Exception& error) {
     throw Error({.where = path.string(), .what = "cannot be written", .found = error.what()});
+  } catch (const std::ios_base::failure&) {
+    fail(path, "cannot be written", errno);
   }
   file.move_into_place();
 }

@@ -69,7 +69,36 @@ void check_positive(const char* what, double value) {
   throw Error({.where = what, .what = "is not a positive number", .found = std::to_string(value)});
 }
 
+DragLimiter limiter_for(const RobotModel& robot, const TeleoperationOptions& options) {
+  LimiterOptions limits = *options.limiter;
+  limits.period_s = std::max(limits.period_s, options.longest_period_s);
+  DragLimiter limiter(limits);
+  if (limits.axes == AxisKind::joints && limiter.axis_count() != axes_of(robot)) {
+    throw Error({.where = "limiter",
+                 .what = "it is for another arm",
+                 .found = std::to_string(limiter.axis_count()) + " axes",
+                 .expected = std::to_string(axes_of(robot)) + ", one for each joint of '" +
+                             robot.name + "'"});
+  }
+  return limiter;
+}
+
 }  // namespace
+
+void check_fit(const RobotModel& robot, const TeleoperationOptions& options) {
+  checked_axes(robot);
+  checked(options.master);
+  check_positive("longest_period_s", options.longest_period_s);
+  check_positive("longest_jump_m", options.longest_jump_m);
+  if (options.limiter) (void)limiter_for(robot, options);
+  const int links = static_cast<int>(robot.links.size());
+  if (options.tool_link >= links) {
+    throw Error({.where = "tool_link",
+                 .what = "no such link",
+                 .found = std::to_string(options.tool_link),
+                 .expected = "less than " + std::to_string(links)});
+  }
+}
 
 const char* to_string(Status status) noexcept {
   switch (status) {
@@ -116,29 +145,9 @@ Teleoperation::Teleoperation(const RobotModel& robot, BodyPoints points,
       qd_(AxisVector::Zero(axes_of(robot))),
       drag_(AxisMatrix::Zero(axes_of(robot), axes_of(robot))),
       view_(std::make_unique<FieldView>(field)) {
-  checked(options.master);
-  check_positive("longest_period_s", options.longest_period_s);
-  check_positive("longest_jump_m", options.longest_jump_m);
-  if (options.limiter) {
-    LimiterOptions limits = *options.limiter;
-    limits.period_s = std::max(limits.period_s, options.longest_period_s);
-    limiter_.emplace(limits);
-    if (options.limiter->axes == AxisKind::joints && limiter_->axis_count() != axes_of(robot)) {
-      throw Error({.where = "limiter",
-                   .what = "it is for another arm",
-                   .found = std::to_string(limiter_->axis_count()) + " axes",
-                   .expected = std::to_string(axes_of(robot)) + ", one for each joint of '" +
-                               robot.name + "'"});
-    }
-  }
-  const int links = static_cast<int>(robot.links.size());
-  if (options.tool_link >= links) {
-    throw Error({.where = "tool_link",
-                 .what = "no such link",
-                 .found = std::to_string(options.tool_link),
-                 .expected = "less than " + std::to_string(links)});
-  }
-  if (options_.tool_link < 0) options_.tool_link = links - 1;
+  check_fit(robot, options);
+  if (options.limiter) limiter_.emplace(limiter_for(robot, options));
+  if (options_.tool_link < 0) options_.tool_link = static_cast<int>(robot.links.size()) - 1;
 }
 
 Teleoperation::~Teleoperation() = default;

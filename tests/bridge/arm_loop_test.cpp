@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 
 #include "announcer.h"
 #include "arm_loop.h"
@@ -57,9 +58,10 @@ class Wire : public testing::Test {
     return made;
   }
 
-  static ros2::JointState state(int k) {
+  // @param ahead_ms  by so much its stamp is later than it should be
+  static ros2::JointState state(int k, std::int64_t ahead_ms = 0) {
     const Vec3 q = cli_test::parabola(0.001 * k);
-    const std::int64_t ns = start_ns + k * ms;
+    const std::int64_t ns = start_ns + (k + ahead_ms) * ms;
     ros2::JointState state;
     state.header.stamp = {static_cast<std::int32_t>(ns / 1'000'000'000),
                           static_cast<std::uint32_t>(ns % 1'000'000'000)};
@@ -75,8 +77,16 @@ class Wire : public testing::Test {
     const std::int64_t sent = said.header.stamp.sec * 1'000'000'000LL + said.header.stamp.nanosec;
     return answer_to(bytes, sent + (2 + delayed_ms) * ms);
   }
+  std::optional<ArmSample> heard(const std::vector<std::byte>& bytes, std::int64_t arrived_ns) {
+    return intake_.joint_state(bytes, {.since_1970_ns = arrived_ns, .monotonic_ns = arrived_ns});
+  }
   Answer answer_to(const std::vector<std::byte>& bytes, std::int64_t arrived_ns) {
-    EXPECT_TRUE(loop_->give(intake_.joint_state(bytes, arrived_ns)));
+    const auto sample = heard(bytes, arrived_ns);
+    EXPECT_TRUE(sample) << "let be";
+    return sample ? answer_to(*sample) : Answer();
+  }
+  Answer answer_to(const ArmSample& sample) {
+    EXPECT_TRUE(loop_->give(sample));
     Answer answer;
     // Answers of silence, where this machine was slow, are none to this message.
     do {
@@ -160,15 +170,92 @@ TEST_F(Wire, AMessageThatWasUnderWayForLongIsLate) {
   expect_recovery(along + 1);
 }
 
+TEST_F(Wire, AClockThatIsSetBackIsNamedOnceAndNotLateFromThenOn) {
+  follow(0, along);
+  const Answer answer = answer_to(state(along, -1000), 1000);
+  EXPECT_STREQ(status_of(answer), "time ran backwards");
+  EXPECT_TRUE(is_safe(answer));
+  for (int k = along + 1; k < along + 100; ++k) {
+    ASSERT_STREQ(status_of(answer_to(state(k, -1000), 1000)), "ok") << k;
+  }
+  EXPECT_STREQ(status_of(answer_to(state(along + 100, -1000), 1060)), "late");
+}
+
+TEST_F(Wire, AStampThatIsFarAheadMakesNoOtherLate) {
+  follow(0, along);
+  const Answer answer = answer_to(state(along, 100'000), -100'000);
+  EXPECT_STREQ(status_of(answer), "deadline missed");
+  EXPECT_TRUE(is_safe(answer));
+  EXPECT_STREQ(status_of(answer_to(state(along + 1))), "time ran backwards");
+  expect_recovery(along + 2);
+}
+
+TEST_F(Wire, AStampThatIsALittleAheadMakesNoOtherLate) {
+  follow(0, along);
+  EXPECT_STREQ(status_of(answer_to(state(along, 45), -45)), "deadline missed");
+  EXPECT_STREQ(status_of(answer_to(state(along + 1))), "time ran backwards");
+  for (int k = along + 2; k < along + 50; ++k) {
+    ASSERT_STREQ(status_of(answer_to(state(k), 20)), "ok") << k;
+  }
+}
+
+TEST_F(Wire, OurOwnClockMayBeSet) {
+  follow(0, along);
+  for (int k = along; k < along + 50; ++k) {
+    std::vector<std::byte> bytes;
+    ros2::write_cdr(state(k), bytes);
+    const std::int64_t now = start_ns + (k + 2) * ms;
+    const auto sample =
+        intake_.joint_state(bytes, {.since_1970_ns = now + 1'000'000 * ms, .monotonic_ns = now});
+    ASSERT_TRUE(sample);
+    ASSERT_STREQ(status_of(answer_to(*sample)), "ok") << k;
+  }
+}
+
 TEST_F(Wire, AnotherRobotIsNamedSo) {
   follow(0, along);
   ros2::JointState other = state(along);
-  other.name = {"shoulder", "elbow", "wrist", "gripper"};
+  other.name = {"slide", "elbow", "wrist", "gripper"};
   const Answer answer = answer_to(other);
   EXPECT_STREQ(status_of(answer), "another robot");
   EXPECT_EQ(level_of(answer), ros2::DiagnosticStatus::error);
   EXPECT_TRUE(is_safe(answer));
   expect_recovery(along + 1);
+}
+
+TEST_F(Wire, AnotherDeviceBesideOursIsLetBeAndAloneItIsAnotherRobot) {
+  ros2::JointState gripper = state(0);
+  gripper.name = {"gripper"};
+  gripper.position = {0.1};
+  EXPECT_STREQ(status_of(answer_to(gripper)), "another robot");
+  std::vector<std::byte> bytes, bare_bytes;
+  ros2::write_cdr(gripper, bytes);
+  gripper.position.clear();  // a wheel, say: velocities alone
+  ros2::write_cdr(gripper, bare_bytes);
+  follow(0, along);
+  for (int k = along; k < along + 20; ++k) {
+    EXPECT_FALSE(heard(bytes, start_ns + k * ms));
+    EXPECT_FALSE(heard(bare_bytes, start_ns + k * ms));
+    ASSERT_STREQ(status_of(answer_to(state(k))), "ok") << k;
+  }
+}
+
+// As ROS 2's broadcaster says them of hardware that has none.
+TEST_F(Wire, VelocitiesThatAreNaNAreNone) {
+  Teleoperation plain(place().robot, sample_body_points(place().robot, {}), place().field);
+  for (int k = 0; k < along + 20; ++k) {
+    ros2::JointState said = state(k);
+    said.velocity.assign(4, 0.0);
+    said.velocity[2] = std::numeric_limits<double>::quiet_NaN();
+    const Answer answer = answer_to(said);
+    const Vec3 q = cli_test::parabola(0.001 * k);
+    Output output;
+    const Input input{
+        .time_s = 0.001 * k, .q = q.data(), .joint_count = 3, .X_WB = cli_test::small_arm_X_WB()};
+    ASSERT_STREQ(status_of(answer), to_string(plain.tick(input, output))) << k;
+    ASSERT_LT((answer.output.torque - output.torque).norm(), 1e-6) << k;
+  }
+  expect_recovery(along + 20);
 }
 
 TEST_F(Wire, NumbersThatAreNoneAreSafe) {
@@ -203,8 +290,9 @@ TEST_F(Wire, SurvivesAnyBytes) {
       const int place = test::whole(random, 0, static_cast<int>(bytes.size()) - 1);
       bytes[static_cast<std::size_t>(place)] = static_cast<std::byte>(test::whole(random, 0, 255));
     }
-    const Answer answer = answer_to(bytes, start_ns + along * ms);
-    EXPECT_TRUE(answer.output.torque.allFinite());
+    const auto sample = heard(bytes, start_ns + along * ms);
+    if (!sample) return;  // none of our joints is named any more
+    EXPECT_TRUE(answer_to(*sample).output.torque.allFinite());
   });
 }
 

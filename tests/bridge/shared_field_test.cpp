@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,6 +20,8 @@
 #include "field_follower.h"
 #include "field_in_use.h"
 #include "field_sharer.h"
+#include "vicinity/geometry/error.h"
+#include "vicinity/mesh/primitive.h"
 #include "vicinity/robot/body_points.h"
 #include "vicinity/robot/urdf_file.h"
 #include "vicinity/viscosity/field_file.h"
@@ -254,6 +257,43 @@ TEST_F(SharedField, WhatWasFetchedBeforeTheEndIsNotFetchedAgain) {
   EXPECT_EQ(follower_->checksum(), checksum_of(built()));
 }
 
+// What passes is no reason to give a field up for ever.
+TEST_F(SharedField, ArrivesWhereNoMoreFilesMayBeOpen) {
+  follow();
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  for (int n = 0; n < 2000 && !std::filesystem::exists(part()); ++n) {
+    (void)sharer_->step(0);
+    ASSERT_FALSE(follower_->step(0.001));
+  }
+  const rlimit full{.rlim_cur = 3, .rlim_max = before.rlim_max};  // those that are open stay
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &full), 0);
+  const auto field = wait_for_field();
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  ASSERT_TRUE(field) << said_.str();
+  EXPECT_EQ(bytes_of(copy()), built());
+}
+
+// As scp and rsync --inplace write: the field that is felt is another.
+TEST_F(SharedField, AFieldFileThatIsCutAndWrittenAnewInPlaceIsNoHarm) {
+  const std::filesystem::path file = folder_ / "field.vicinity";
+  save_field(WatchedInput(folder_ / "scene.yaml").field(), file);
+  WatchedInput input(file);
+  const ViscosityField field = input.field();
+  const Bytes whole = bytes_of(file);
+  std::filesystem::resize_file(file, 100);
+  EXPECT_TRUE(std::ranges::equal(field.image(), whole));
+  for (int n = 0; n < 2; ++n) (void)input.changed();
+  EXPECT_THROW((void)input.field(), Error);
+  EXPECT_FALSE(input.changed()) << "it was looked at";
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(whole.data()),
+             static_cast<std::streamsize>(whole.size()));
+  (void)input.changed();
+  EXPECT_TRUE(input.changed());
+  EXPECT_TRUE(std::ranges::equal(input.field().image(), whole));
+}
+
 TEST_F(SharedField, SurvivesAnyManifest) {
   follow();
   const dds_entity_t liar =
@@ -272,6 +312,19 @@ TEST_F(SharedField, SurvivesAnyManifest) {
   share();  // whoever speaks last is believed
   ASSERT_TRUE(wait_for_field()) << said_.str();
   EXPECT_EQ(bytes_of(copy()), built());
+}
+
+TEST(FieldInUse, OneThatCannotBeFeltIsSaidOnceAndGone) {
+  cli::Arm arm;
+  arm.robot = parse_urdf(cli_test::small_arm, "the small arm").robot;
+  arm.points = sample_body_points(arm.robot, {});
+  arm.teleoperation.longest_jump_m = -1;
+  Scene scene;
+  scene.voxel_size = 0.05;
+  scene.objects.push_back({.name = "block", .shape = primitive::box({0.2, 0.1, 0.1})});
+  FieldInUse in_use(arm);
+  EXPECT_THROW(in_use.offer(build_field(scene).field), Error);
+  EXPECT_NO_THROW(in_use.hand_over());
 }
 
 // Answers name objects of the field that they are about, also while it changes.

@@ -7,9 +7,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -17,9 +19,11 @@
 #include "bridge.h"
 #include "cli/small_arm.h"
 #include "dds/participant.h"
+#include "interruption.h"
 #include "mcap/reader.h"
 #include "ros2/messages.h"
 #include "ros2/topics.h"
+#include "vicinity/geometry/error.h"
 
 namespace vicinity::bridge {
 namespace {
@@ -48,6 +52,9 @@ TEST(Endpoints, CarryTheTypeHashAndTheNamesOfRos2) {
   ros2::JointState heard;
   ASSERT_TRUE(ros2::read_cdr(bytes, heard));
   EXPECT_EQ(heard.position, said.position);
+
+  EXPECT_TRUE(dds::is_heard(writer));
+  EXPECT_FALSE(dds::is_heard(ours.writer<ros2::JointState>(ros2::topic::joint_efforts)));
 
   dds_instance_handle_t match = 0;
   ASSERT_EQ(dds_get_matched_publications(reader, &match, 1), 1);
@@ -140,6 +147,58 @@ TEST(Bridge, RefusesWhatCannotBeUsed) {
   options.share_field.clear();
   options.dds = "nowhere.xml";
   EXPECT_THROW(bridge(options, out, err), std::exception);
+  options.dds.clear();
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  options.half_speed_drag = infinite;
+  EXPECT_THROW(bridge(options, out, err), std::exception);
+  options.half_speed_drag = 1;
+  for (const double seconds : {0.0, -1.0, infinite, std::numeric_limits<double>::quiet_NaN()}) {
+    options.seconds = seconds;
+    EXPECT_THROW(bridge(options, out, err), std::exception) << seconds;
+  }
+  options.seconds.reset();
+  options.recording = "felt.csv";
+  EXPECT_THROW(bridge(options, out, err), std::exception);
+}
+
+// Before there is a field, which the follower may never see.
+TEST(Bridge, RefusesADeviceForAnotherArmAtTheStart) {
+  std::string name = (std::filesystem::temp_directory_path() / "vicinity_device_XXXXXX").string();
+  const std::filesystem::path folder = mkdtemp(name.data());
+  std::ofstream(folder / "arm.urdf") << cli_test::small_arm;
+  std::ofstream(folder / "device.yaml") << "name: two axes\naxes: joints\naxis_count: 2\n"
+                                           "physical_damping: [0.3, 0.2]\n"
+                                           "torque_limits: [4, 3]\n";
+  BridgeOptions options;
+  options.input = folder / "copy.vicinity";
+  options.follow_field = "/cell";
+  options.arm.robot = folder / "arm.urdf";
+  options.arm.device = folder / "device.yaml";
+  options.domain = own_domain();
+  options.seconds = 0.2;
+  std::ostringstream out, err;
+  try {
+    bridge(options, out, err);
+    ADD_FAILURE() << "it runs: " << err.str();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("it is for another arm"));
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Bridge, ASignalIsHowItEnds) {
+  struct sigaction before {};
+  ASSERT_EQ(sigaction(SIGTERM, nullptr, &before), 0);
+  cli::catch_interruptions();
+  {
+    const cli::UntilAsked until_asked;
+    EXPECT_FALSE(cli::interruption_asked());
+    raise(SIGTERM);
+    EXPECT_TRUE(cli::interruption_asked());
+  }
+  EXPECT_FALSE(cli::interruption_asked()) << "whatever comes next would end too";
+  sigaction(SIGTERM, &before, nullptr);
+  sigaction(SIGINT, &before, nullptr);
 }
 
 }  // namespace

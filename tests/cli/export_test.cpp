@@ -5,9 +5,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <cstring>
 #include <random>
@@ -222,6 +224,27 @@ TEST_F(SmallField, VdbIsWrittenWholeOrRefusedWithASentence) {
   const std::string vdb = text_of(folder / "f.vdb");
   EXPECT_EQ(vdb.substr(0, 4), std::string("\x20\x42\x44\x56"));  // OpenVDB's magic number
   EXPECT_THAT(vdb, HasSubstr("viscosity"));
+}
+
+// Where the disk is full, and every write of more than some bytes fails.
+TEST_F(SmallField, VdbThatTheDiskDoesNotTakeLeavesTheEarlierOne) {
+  build();
+  if (folder.run({"export", "f.vicinity", "-o", "f.vdb"}).code != 0) {
+    GTEST_SKIP() << "built without OpenVDB";
+  }
+  const std::string whole = text_of(folder / "f.vdb");
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit full{.rlim_cur = whole.size() / 2, .rlim_max = before.rlim_max};
+  const auto on_signal = std::signal(SIGXFSZ, SIG_IGN);  // children take both over
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+  const Answer answer = folder.run({"export", "f.vicinity", "-o", "f.vdb"});
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, on_signal);
+  EXPECT_EQ(answer.code, 2) << answer.out;
+  EXPECT_THAT(answer.err, HasSubstr("f.vdb: cannot be written"));
+  EXPECT_THAT(folder.files(), ElementsAre("f.vdb", "f.vicinity", "scene.yaml"));
+  EXPECT_EQ(text_of(folder / "f.vdb"), whole);
 }
 
 TEST_F(SmallField, AnAbsurdSizeIsRefusedBeforeAnythingIsWritten) {

@@ -184,8 +184,27 @@ TEST_F(Replay, RefusesRecordingsThatHoldNoMotion) {
   for (ros2::JointState& state : other) state.name = {"shoulder", "elbow", "wrist"};
   refused(recorded_states(other), "no column for joint 'turn'");
   other = states;
-  other[40].position[1] = std::numeric_limits<double>::quiet_NaN();
-  refused(recorded_states(other), "no finite number");
+  for (ros2::JointState& state : other) {
+    state.position[1] = std::numeric_limits<double>::quiet_NaN();
+  }
+  refused(recorded_states(other), "no joint states with positions");
+}
+
+// One message that is no place spoils no recording; of hardware that measures no velocities ROS 2
+// records NaN.
+TEST_F(Replay, LeavesOutStatesThatAreNotFiniteAndSaysHowMany) {
+  std::vector<ros2::JointState> states = states_of(parabola, every(1000, length_s));
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  ros2::JointState odd = states[400];
+  odd.header.stamp.nanosec += 500'000;
+  odd.position[1] = nan;
+  states.insert(states.begin() + 401, 2, odd);
+  for (ros2::JointState& state : states) state.velocity = {nan, nan, nan};
+  folder_->write("odd.mcap", recorded_states(states));
+  const Answer answer = replay("odd.mcap", {"-o", "felt.csv"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("2 joint states on /joint_states hold positions"));
+  expect_equal(rows_of(*folder_ / "felt.csv"), direct(parabola, 901), 1e-6);
 }
 
 TEST_F(Replay, AnMcapRecordingNeedsTimesThatAStampCanSay) {

@@ -84,6 +84,17 @@ class Errors(unittest.TestCase):
         self.assertIn("cell.yaml", raised.exception.where)
         self.assertIn("objects", str(raised.exception))
 
+    def test_a_shape_that_was_seen_outlives_the_one_that_takes_its_place(self):
+        item = vicinity.SceneObject("a", vicinity.MeshFile("/a/" + "x" * 200))
+        file = item.shape
+        item.shape = vicinity.primitive.sphere(1.0)
+        self.assertEqual(str(file.path), "/a/" + "x" * 200)
+        vertices = item.shape.vertices
+        before = vertices.copy()
+        item.shape = vicinity.primitive.box([1, 1, 1])
+        np.testing.assert_array_equal(vertices, before)
+        self.assertEqual(item.shape.vertices.shape, (8, 3))
+
     def test_a_pose_that_is_not_rigid_is_refused(self):
         with self.assertRaises(vicinity.Error):
             post(X_WO=2 * np.eye(4))

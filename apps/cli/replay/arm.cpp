@@ -121,6 +121,7 @@ Arm fit_out(RobotLoad load, const SceneRobot& placed, const ArmOptions& options)
   points.exclude = placed.exclude;
   arm.points = sample_body_points(arm.robot, points);
   if (arm.points.count() == 0) refuse_pointless(arm, placed, !options.points);
+  check_fit(arm.robot, arm.teleoperation);
   return arm;
 }
 

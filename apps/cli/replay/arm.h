@@ -48,7 +48,8 @@ struct Arm {
 /// The files that the options name: robot, scene and device.
 std::vector<std::filesystem::path> files_of(const ArmOptions& options);
 
-/// Errors: throws Error for a file that cannot be used and for words that fit nothing.
+/// Errors: throws Error for a file that cannot be used, for words that fit nothing, and for a
+/// device that is for another arm.
 Arm read_arm(const ArmOptions& options);
 
 /// How an arm feels and how often it ticks, for whoever has a robot of his own: without robot,

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -44,6 +45,8 @@ struct Felt {
   std::map<std::uint64_t, ros2::DiagnosticStatus> status;
 };
 
+bool is_finite(double number) { return std::isfinite(number); }
+
 class McapLog {
  public:
   explicit McapLog(const std::filesystem::path& path) : where_(path.string()) {
@@ -63,6 +66,12 @@ class McapLog {
       log.remarks.push_back(
           fmt::format("{} holds messages of {} senders: those that name {} joints are used",
                       chosen_topic(), others + 1, names.size()));
+    }
+    const auto nowhere = nowhere_.find(chosen_topic());
+    if (nowhere != nowhere_.end()) {
+      log.remarks.push_back(
+          fmt::format("{} joint states on {} hold positions that are not finite: they are left out",
+                      nowhere->second, nowhere->first));
     }
     return log;
   }
@@ -101,7 +110,15 @@ class McapLog {
       return;
     }
     if (state.position.size() != state.name.size() || state.name.empty()) return;
-    if (state.velocity.size() != state.name.size()) state.velocity.clear();
+    if (!std::ranges::all_of(state.position, is_finite)) {
+      ++nowhere_[channel.topic];
+      return;
+    }
+    // NaN is what hardware says that measures none.
+    if (state.velocity.size() != state.name.size() ||
+        !std::ranges::all_of(state.velocity, is_finite)) {
+      state.velocity.clear();
+    }
     const ros2::Time& stamp = state.header.stamp;
     const bool stamped = stamp.sec >= 0 && nanoseconds_of(stamp) > 0;
     topics_[channel.topic][state.name].push_back(
@@ -234,6 +251,7 @@ class McapLog {
   std::string where_;
   mcap::Ending ending_;
   std::map<std::string, Senders> topics_;
+  std::map<std::string, std::size_t> nowhere_;  // by topic: states without a position
   Felt felt_;
 };
 

@@ -40,10 +40,15 @@ void McapRecording::add(std::uint64_t time_ns, std::span<const double> q,
   put(force_, time_ns, ros2::Float64{master_force});
   const bool known = reason.link >= 0 && reason.object >= 0;
   if (known) put(distance_, time_ns, ros2::Float64{reason.distance_m});
+  say(time_ns, reason, status, level);
+}
+
+void McapRecording::say(std::uint64_t time_ns, const Reason& reason, std::string_view status,
+                        std::byte level) {
   const bool unchanged = said_ == status && said_reason_.link == reason.link &&
                          said_reason_.object == reason.object && said_reason_.rank == reason.rank;
   if (unchanged) return;
-  put(diagnostics_, time_ns, messages_.diagnostics(stamp, status, level, reason));
+  put(diagnostics_, time_ns, messages_.diagnostics(stamp_of(time_ns), status, level, reason));
   said_ = status;
   said_reason_ = reason;
 }

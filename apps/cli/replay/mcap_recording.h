@@ -33,6 +33,9 @@ class McapRecording {
            const Wrench& tool_W, double master_force, const Reason& reason, const Pose& X_WB,
            std::string_view status, std::byte level);
 
+  /// Of a state that is no place: its diagnostics alone, where they are others than before.
+  void say(std::uint64_t time_ns, const Reason& reason, std::string_view status, std::byte level);
+
   /// Another field from now on.
   void name_objects(std::vector<std::string> objects) {
     messages_.name_objects(std::move(objects));

@@ -77,6 +77,10 @@ struct TeleoperationOptions {
   double longest_jump_m = 0.1;
 };
 
+/// For whoever has a robot before he has a field. Errors: throws Error for options that do not fit
+/// the robot.
+void check_fit(const RobotModel& robot, const TeleoperationOptions& options);
+
 /// One joint state.
 struct Input {
   double time_s = 0;
@@ -127,7 +131,7 @@ struct Output {
 /// One arm in one field. tick() belongs to one thread; swap_field() may be called from another.
 class Teleoperation {
  public:
-  /// Takes all memory. Errors: throws Error for options that do not fit the robot.
+  /// Takes all memory. Errors: as check_fit().
   Teleoperation(const RobotModel& robot, BodyPoints points, const ViscosityField& field,
                 const TeleoperationOptions& options = {});
   ~Teleoperation();
