@@ -106,8 +106,8 @@ AxisVector start_of(const ServeOptions& options, const RobotModel& robot, bool p
       if (said[c] < limits.lower || said[c] > limits.upper) {
         throw Error({.where = "--start",
                      .what = fmt::format("joint '{}' cannot be there", cli::joint_name(robot, c)),
-                     .found = fmt::format("{:g}", said[c]),
-                     .expected = fmt::format("{:g} to {:g}", limits.lower, limits.upper)});
+                     .found = fmt::format("{:.10g}", said[c]),
+                     .expected = fmt::format("{:.10g} to {:.10g}", limits.lower, limits.upper)});
       }
       q[at] = said[c];
     } else if (limited && (probe || limits.lower > 0 || limits.upper < 0)) {

@@ -83,7 +83,9 @@ TEST_P(NotReplaced, AndSaysSo) {
   EXPECT_THAT(answer.err, AllOf(HasSubstr(GetParam().named), HasSubstr(GetParam().sentence_says)));
   ASSERT_EQ(folder.files(), names);
   for (std::size_t n = 0; n < names.size(); ++n) {
-    if (!texts[n].empty()) EXPECT_EQ(text_of(folder / names[n]), texts[n]) << names[n];
+    if (!texts[n].empty()) {
+      EXPECT_EQ(text_of(folder / names[n]), texts[n]) << names[n];
+    }
   }
   EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
 }

@@ -3,6 +3,7 @@
 
 #include "vicinity/robot/body_points.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -38,8 +38,8 @@ int slice(const SliceOptions& options, std::ostream& out, std::ostream&) {
     if (plane.position < lo || plane.position > hi) {
       throw Error({.where = "--box",
                    .what = "the plane does not pass through it",
-                   .found = fmt::format("{} from {:g} to {:g} m", "xyz"[plane.axis], lo, hi),
-                   .expected = fmt::format("{:g} m in between", plane.position)});
+                   .found = fmt::format("{} from {:.10g} to {:.10g} m", "xyz"[plane.axis], lo, hi),
+                   .expected = fmt::format("{:.10g} m in between", plane.position)});
     }
   }
   check_outputs({{"-o", options.output}}, {options.field});
