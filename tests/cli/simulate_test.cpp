@@ -93,7 +93,7 @@ TEST(Simulate, RefusesWithOneSentence) {
   bench.refused({"bare.yaml"}, "no robot");
   bench.refused({"cell.yaml", "--robot", "light.urdf"}, "no inertia");
   bench.refused({"cell.yaml", "--step-ms", "50"}, "time step");
-  bench.refused({"cell.yaml", "--step-ms", "nan"}, "time step");
+  bench.refused({"cell.yaml", "--step-ms", "nan"}, "not a finite number");
   bench.refused({"cell.yaml", "--delays", "0,-5"}, "delay");
   bench.refused({"cell.yaml", "--tasks", "gantry.urdf"}, "gantry.urdf");
   bench.refused({}, "no scene");

@@ -33,7 +33,7 @@ export function askForUnit(name: string, mesh: UploadedMesh): Promise<LengthUnit
       "dialog",
       { class: "units", "aria-label": `Unit of ${name}` },
       element("h2", {}, name),
-      element("p", { class: "note" }, `${facts}. Mesh files carry no unit. Which of these is it?`),
+      element("p", { class: "note" }, `${facts}. A unit in a mesh file is not read. Which of these is it?`),
       element("fieldset", {}, element("legend", { class: "visually-hidden" }, "Unit"), ...choices),
       ...mesh.problems.map((problem) => element("p", { class: "note bad" }, problem)),
       element("div", { class: "row end" }, button("Leave it out", () => dialog.close()), add),
