@@ -248,7 +248,7 @@ void Viewer::answer_build(ClientId client, const Command& command) {
     throw Error({.where = "build", .what = "a field is being built", .hint = "waiting for it"});
   }
   if (builder_.joinable()) builder_.join();
-  builder_ = std::thread([this, client, id = command.id, document = std::move(document)] {
+  auto work = [this, client, id = command.id, document = std::move(document)] {
     const auto fails = [&](SharedBytes why) {
       building_.store(false);
       server_->send(client, std::move(why));
@@ -264,7 +264,13 @@ void Viewer::answer_build(ClientId client, const Command& command) {
     } catch (const std::exception& error) {
       fails(error_message(id, error.what()));
     }
-  });
+  };
+  try {
+    builder_ = std::thread(std::move(work));
+  } catch (...) {  // no thread is to be had
+    building_.store(false);
+    throw;
+  }
 }
 
 void Viewer::build(ClientId client, std::uint32_t id, const SceneDocument& document) {

@@ -279,10 +279,12 @@ void Viewer::hand_on(ClientId client, std::string message) {
   Jobs& jobs = is_slow(read_command(message).type) ? *slow_ : *quick_;
   const bool taken =
       jobs.add([this, client, message = std::move(message), drives = loop_.drives()] {
+        {
+          const std::lock_guard lock(state_);
+          const auto waiting = waiting_.find(client);
+          if (waiting != waiting_.end()) --waiting->second;
+        }
         answer(client, message, drives);
-        const std::lock_guard lock(state_);
-        const auto waiting = waiting_.find(client);
-        if (waiting != waiting_.end()) --waiting->second;
       });
   if (taken) return;
   {
