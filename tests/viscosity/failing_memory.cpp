@@ -35,6 +35,12 @@ void* operator new(std::size_t size) {
   return checked(std::malloc(std::max<std::size_t>(size, 1)));
 }
 void* operator new[](std::size_t size) { return operator new(size); }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return is_refused(size) ? nullptr : std::malloc(std::max<std::size_t>(size, 1));
+}
+void* operator new[](std::size_t size, const std::nothrow_t& none) noexcept {
+  return operator new(size, none);
+}
 void* operator new(std::size_t size, std::align_val_t align) {
   if (is_refused(size)) throw std::bad_alloc();
   const auto alignment = static_cast<std::size_t>(align);
