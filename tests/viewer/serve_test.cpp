@@ -61,6 +61,23 @@ TEST(Serve, RefusesWhatItWouldPassOverInSilence) {
   EXPECT_THAT(refusal_of(bad), HasSubstr("'slice=q:7'"));
 }
 
+TEST(Serve, ChecksHowItFeelsAndHowOftenWithoutARobotToo) {
+  const ScratchFolder folder;
+  viewer::ServeOptions good;
+  good.input = folder.write("small.yaml", scene_text);
+  good.folder = folder.path() / "files";
+  good.arm.rate = 100;
+  EXPECT_EQ(refusal_of(good), "");
+  for (const double rate : {0.0, -5.0, 1e6}) {
+    viewer::ServeOptions bad = good;
+    bad.arm.rate = rate;
+    EXPECT_THAT(refusal_of(bad), HasSubstr("--rate")) << rate;
+  }
+  viewer::ServeOptions bad = good;
+  bad.arm.master = "1,2";
+  EXPECT_THAT(refusal_of(bad), HasSubstr("--master"));
+}
+
 TEST(Serve, KnowsEveryWordOfTheAddress) {
   for (const char* view : {"theme=dark&view=iso&slice=y:1.15&cut=off&shells=1,6&panels=off",
                            "theme=light&slice=off&cut=on&shells=all", "view=front", "view=side",
