@@ -99,34 +99,40 @@ TEST(Hand, FeelsTheDragThatTheArmFeels) {
   EXPECT_NEAR(slide.hand.felt(), 4, 0.3);
 }
 
+// The small arm, whose joints have limits, at rest at zero; in no drag.
+struct SmallArm {
+  SmallArm() { kinematics.update(none.data(), none.data(), Pose::Identity()); }
+  void move(const Drive& drive) {
+    hand.move(drive, kinematics, none, period_s);
+    kinematics.update(hand.q().data(), hand.qd().data(), Pose::Identity());
+  }
+  const AxisVector none = AxisVector::Zero(3);
+  RobotModel robot = parse_urdf(cli_test::small_arm, "arm.urdf").robot;
+  ForwardKinematics kinematics{robot};
+  Hand hand{robot, 3, none};
+};
+
 TEST(Hand, IsOnARecordingThatGoesBeyondALimitAsFarAsTheLimit) {
-  const RobotModel robot = parse_urdf(cli_test::small_arm, "arm.urdf").robot;
-  ForwardKinematics kinematics(robot);
-  const AxisVector start = AxisVector::Zero(3);
-  Hand hand(robot, 3, start);
-  kinematics.update(start.data(), start.data(), Pose::Identity());
+  SmallArm arm;
+  const Hand& hand = arm.hand;
   Drive drive;
   drive.mode = DriveMode::follow;
   drive.q = Vec3(0.1, 2.5, 0.3);  // bend goes to 2, slide to 0.1
-  for (int k = 0; k < 3000; ++k) hand.move(drive, kinematics, start, period_s);
+  for (int k = 0; k < 3000; ++k) arm.move(drive);
   EXPECT_LE((hand.q() - Vec3(0.1, 2, 0.1)).norm(), 1e-12);
   EXPECT_LE(hand.lag(), 1e-12);
   // What no number says moves nothing, and what comes then moves it again.
   drive.q = Vec3(1e306, 0, 0);
-  hand.move(drive, kinematics, start, period_s);
+  arm.move(drive);
   EXPECT_TRUE(hand.q().allFinite() && hand.qd().allFinite());
   drive.q = Vec3::Zero();
-  for (int k = 0; k < 3000; ++k) hand.move(drive, kinematics, start, period_s);
+  for (int k = 0; k < 3000; ++k) arm.move(drive);
   EXPECT_LE(hand.q().norm(), 1e-12);
 }
 
 TEST(Hand, NeverMovesAJointFasterOrFartherThanItsLimits) {
-  const RobotModel robot = parse_urdf(cli_test::small_arm, "arm.urdf").robot;
-  ForwardKinematics kinematics(robot);
-  const AxisVector start = AxisVector::Zero(3);
-  Hand hand(robot, 3, start);
-  kinematics.update(start.data(), start.data(), Pose::Identity());
-  const AxisVector none = AxisVector::Zero(3);
+  SmallArm arm;
+  const Hand& hand = arm.hand;
   const double fastest[] = {1.5, 3, 1};  // turn states none
   for (int k = 0; k < 6000; ++k) {
     Drive drive;
@@ -134,8 +140,7 @@ TEST(Hand, NeverMovesAJointFasterOrFartherThanItsLimits) {
     drive.p_WT = Vec3(k % 700 < 350 ? 1e6 : -1e6, 3, -1e9);
     drive.mode = k < 3000 ? DriveMode::joints : DriveMode::tool;
     const AxisVector before = hand.q();
-    hand.move(drive, kinematics, none, period_s);
-    kinematics.update(hand.q().data(), hand.qd().data(), Pose::Identity());
+    arm.move(drive);
     for (int c = 0; c < 3; ++c) {
       ASSERT_LE(std::abs(hand.qd()[c]), fastest[c] * (1 + 1e-9)) << "joint " << c << " at " << k;
       ASSERT_NEAR(hand.q()[c] - before[c], hand.qd()[c] * period_s, 1e-12);
